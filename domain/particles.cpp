@@ -1,0 +1,97 @@
+#include "domain/particles.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+namespace talus {
+
+ParticleSet::ParticleSet(std::string name, int dimension) : name_(std::move(name)), dimension_(dimension) {
+    add(field::id);
+    add(field::position);
+}
+
+const Column* ParticleSet::find(const FieldInfo& info) const {
+    for (const Column& column : columns_)
+        if (column.info == &info) return &column;
+    return nullptr;
+}
+
+Column& ParticleSet::column(const FieldInfo& info) {
+    return const_cast<Column&>(std::as_const(*this).column(info));
+}
+
+const Column& ParticleSet::column(const FieldInfo& info) const {
+    if (const Column* found = find(info)) return *found;
+    throw std::logic_error(fmt::format("particle set '{}' has no field '{}'", name_, info.name));
+}
+
+void ParticleSet::add(const FieldInfo& info) {
+    if (has(info)) return;
+    Column column{&info, {}};
+    const std::size_t count = info.reach == Reach::halo ? size_with_halo() : size_;
+    column.components.assign(static_cast<std::size_t>(component_count(info.shape, dimension_)),
+                             std::vector<std::byte>(count * size_of(info.type)));
+    columns_.push_back(std::move(column));
+}
+
+void ParticleSet::resize(std::size_t size) {
+    size_ = size;
+    halo_size_ = 0;
+    for (Column& column : columns_)
+        for (auto& component : column.components) component.resize(size * column.value_size());
+}
+
+void ParticleSet::set_halo_size(std::size_t halo_size) {
+    halo_size_ = halo_size;
+    for (Column& column : columns_) {
+        if (column.info->reach != Reach::halo) continue;
+        for (auto& component : column.components) component.resize(size_with_halo() * column.value_size());
+    }
+}
+
+namespace {
+template <class T>
+void gather(std::span<const std::uint32_t> order, const std::byte* from, std::byte* to) {
+    const T* source = reinterpret_cast<const T*>(from);
+    T* target = reinterpret_cast<T*>(to);
+    for (std::size_t k = 0; k < order.size(); ++k) target[k] = source[order[k]];
+}
+}  // namespace
+
+void ParticleSet::reorder(std::span<const std::uint32_t> order) {
+    for (Column& column : columns_) {
+        const std::size_t value_size = column.value_size();
+        for (auto& component : column.components) {
+            if (column.info->role == Role::state) {
+                reorder_buffer_.resize(order.size() * value_size);
+                switch (value_size) {
+                    case 8:
+                        gather<std::uint64_t>(order, component.data(), reorder_buffer_.data());
+                        break;
+                    case 4:
+                        gather<std::uint32_t>(order, component.data(), reorder_buffer_.data());
+                        break;
+                    default:
+                        gather<std::uint8_t>(order, component.data(), reorder_buffer_.data());
+                        break;
+                }
+                std::swap(component, reorder_buffer_);
+            } else {
+                component.resize(order.size() * value_size);
+            }
+        }
+    }
+    size_ = order.size();
+    halo_size_ = 0;
+}
+
+std::size_t ParticleSet::bytes_per_particle() const {
+    std::size_t bytes = 0;
+    for (const Column& column : columns_) bytes += column.components.size() * column.value_size();
+    return bytes;
+}
+
+}  // namespace talus
