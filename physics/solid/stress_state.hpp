@@ -65,11 +65,11 @@ inline double second_invariant(const Deviator& s) {
 inline double largest_principal(const Deviator& s) {
     const double third = second_invariant(s) / 3;
     if (!(third > 0)) return 0;
-    const double half_determinant =
-        0.5 * (s.xx * (s.yy * s.zz - s.yz * s.yz) - s.xy * (s.xy * s.zz - s.yz * s.xz) +
-               s.xz * (s.xy * s.yz - s.yy * s.xz));
-    const double radius = std::sqrt(third);
-    const double cosine = std::clamp(half_determinant / radius / third, -1.0, 1.0);
+    const double radius = std::sqrt(third), scale = 1 / radius;
+    const double xx = scale * s.xx, yy = scale * s.yy, zz = scale * s.zz;
+    const double xy = scale * s.xy, xz = scale * s.xz, yz = scale * s.yz;
+    const double determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    const double cosine = std::clamp(0.5 * determinant, -1.0, 1.0);
     return 2 * radius * std::cos(std::acos(cosine) / 3);
 }
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "support/hugoniot.hpp"
-#include "support/solid_materials.hpp"
+#include "tests/support/hugoniot.hpp"
+#include "tests/support/solid_materials.hpp"
 
 namespace talus {
 namespace {
