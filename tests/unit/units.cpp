@@ -1,0 +1,53 @@
+#include "io/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace talus {
+namespace {
+
+std::string failure_of(std::string_view text, std::string_view unit) {
+    try {
+        convert_to_si(text, unit);
+    } catch (const UnitError& failure) {
+        return failure.what();
+    }
+    return "accepted";
+}
+
+TEST(Units, ConvertToSi) {
+    EXPECT_DOUBLE_EQ(convert_to_si("3.2 km/s", "m s-1"), 3200);
+    EXPECT_DOUBLE_EQ(convert_to_si("2.7 g/cm^3", "kg m-3"), 2700);
+    EXPECT_DOUBLE_EQ(convert_to_si("50 km", "m"), 50e3);
+    EXPECT_DOUBLE_EQ(convert_to_si(" -7mm ", "m"), -7e-3);
+    EXPECT_DOUBLE_EQ(convert_to_si("+1e2 µs", "s"), 1e-4);
+    EXPECT_DOUBLE_EQ(convert_to_si("26.7 GPa", "Pa"), 26.7e9);
+    EXPECT_DOUBLE_EQ(convert_to_si("4.87e8 J/kg", "J kg-1"), 4.87e8);
+    EXPECT_DOUBLE_EQ(convert_to_si("20 degC", "K"), 293.15);
+}
+
+TEST(Units, AnglesAreRadians) {
+    EXPECT_DOUBLE_EQ(convert_to_si("30 deg", "rad"), std::numbers::pi / 6);
+    EXPECT_DOUBLE_EQ(convert_to_si("30 degree", "rad"), std::numbers::pi / 6);
+    EXPECT_DOUBLE_EQ(convert_to_si("30°", "rad"), std::numbers::pi / 6);
+    EXPECT_DOUBLE_EQ(convert_to_si("2 rad", "rad"), 2);
+}
+
+TEST(Units, PureNumbers) {
+    EXPECT_DOUBLE_EQ(convert_to_si("30 %", "1"), 0.3);
+    EXPECT_DOUBLE_EQ(convert_to_si("0.25", "1"), 0.25);
+}
+
+TEST(Units, ErrorsSayFoundAndExpected) {
+    EXPECT_EQ(failure_of("3 kg", "m"), "'3 kg' is a mass; expected: length [m]");
+    EXPECT_EQ(failure_of("3", "m"), "'3' has no unit; expected: length [m]");
+    EXPECT_EQ(failure_of("3 parsnips", "m s-1"), "unknown unit 'parsnips'; expected: velocity [m s-1]");
+    EXPECT_EQ(failure_of("fast", "m s-1"), "'fast' does not begin with a number; expected: velocity [m s-1]");
+    EXPECT_EQ(failure_of("3 kg7", "rad"), "'3 kg7' is of another dimension; expected: angle [rad]");
+    EXPECT_EQ(failure_of("nan m", "m"), "'nan m' does not begin with a number; expected: length [m]");
+    EXPECT_EQ(failure_of("", "m"), "'' does not begin with a number; expected: length [m]");
+}
+
+}  // namespace
+}  // namespace talus
