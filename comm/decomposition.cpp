@@ -148,38 +148,50 @@ void Decomposition::list_own_cells() {
     }
 }
 
-bool Decomposition::rebalance(std::span<const CellEntry> own_cells, std::span<const double> work,
-                              bool force) {
+void Decomposition::divide(const ParticleSet& particles, const CellGrid& grid) {
+    if (comm_.size() == 1) return;
+    BlockWork mine;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        Cell cell{};
+        for (int axis = 0; axis < particles.dimension(); ++axis)
+            cell[static_cast<std::size_t>(axis)] = grid.index_along(axis, particles.data(field::position, axis)[i]);
+        mine[block_key_of(cell, partition_.block_shift())] += 1;
+    }
+    deal(mine, -1);
+}
+
+bool Decomposition::rebalance(std::span<const double> work) {
     if (comm_.size() == 1) return false;
-    // What pays: a move costs about as much as ten steps' worth of a tenth of the work.
+    // A move costs a few steps: not worth it for less than 5 % of idle time or a gain below 3 %.
     constexpr double worth_moving = 1.05, least_gain = 0.03;
     double local = 0;
     for (const double w : work) local += w;
-    const std::vector<double> per_rank = comm_.all_gather(std::span<const double>(&local, 1));
     double total = 0, most = 0;
-    for (const double w : per_rank) {
+    for (const double w : comm_.all_gather(std::span<const double>(&local, 1))) {
         total += w;
         most = std::max(most, w);
     }
     measured_imbalance_ = total > 0 ? most * comm_.size() / total : 1;
-    if (!force && measured_imbalance_ < worth_moving) return false;
+    if (measured_imbalance_ < worth_moving) return false;
+    BlockWork mine;
+    for (std::size_t c = 0; c < own_cells_.size(); ++c)
+        mine[block_key_of(cell_of(own_cells_[c].key), partition_.block_shift())] += work[c];
+    return deal(mine, least_gain);
+}
 
-    std::map<std::uint64_t, double> mine;
-    for (std::size_t c = 0; c < own_cells.size(); ++c)
-        mine[block_key_of(cell_of(own_cells[c].key), partition_.block_shift())] += work[c];
+bool Decomposition::deal(const BlockWork& mine, double least_gain) {
     std::vector<Block> my_blocks;
-    for (const auto& [key, sum] : mine) my_blocks.push_back({key, sum});
-    std::map<std::uint64_t, double> merged;
-    for (const Block& block : comm_.all_gather(std::span<const Block>(my_blocks)))
-        merged[block.key] += block.work;
+    for (const auto& [key, work] : mine) my_blocks.push_back({key, work});
+    BlockWork merged;
+    for (const Block& block : comm_.all_gather(std::span<const Block>(my_blocks))) merged[block.key] += block.work;
     std::vector<Block> blocks;
     std::vector<int> previous;
-    for (const auto& [key, sum] : merged) {
-        blocks.push_back({key, sum});
-        previous.push_back(partition_.owner_of_block(key));
+    for (const auto& [key, work] : merged) {
+        blocks.push_back({key, work});
+        previous.push_back(partition_.block_count() > 0 ? partition_.owner_of_block(key) : -1);
     }
     std::vector<int> owners = deal_blocks(method_, blocks, comm_.size(), previous);
-    if (!force && imbalance(blocks, owners, comm_.size()) > measured_imbalance_ - least_gain) return false;
+    if (least_gain >= 0 && imbalance(blocks, owners, comm_.size()) > measured_imbalance_ - least_gain) return false;
     partition_ = Partition(partition_.block_shift(), blocks, std::move(owners));
     ++rebalance_count_;
     return true;

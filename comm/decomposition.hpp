@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -21,9 +22,12 @@ class Decomposition {
     /// halo(). Throws AgreedError (exit code 1) naming the id if a particle got lost.
     void arrange(ParticleSet& particles, const CellGrid& grid);
 
-    /// Collective. Cuts the blocks anew, weighted by `work` of each own cell in order (any unit), if that
-    /// lowers the imbalance enough to pay or if `force`. True if ownership changed; arrange() must follow.
-    bool rebalance(std::span<const CellEntry> own_cells, std::span<const double> work, bool force);
+    /// Collective. Cuts the blocks of a new grid, weighted by their numbers of particles. arrange() must follow.
+    void divide(const ParticleSet& particles, const CellGrid& grid);
+
+    /// Collective. Cuts the blocks anew, weighted by the work measured in each own cell since the last arrange(), in
+    /// order (any unit), if that lowers the imbalance enough to pay. True if ownership changed; arrange() must follow.
+    bool rebalance(std::span<const double> work);
 
     /// Collective. The number of particles over all ranks, fixed from now on: arrange() checks it.
     void expect(const ParticleSet& particles);
@@ -42,6 +46,8 @@ class Decomposition {
     struct Ledger {
         std::uint64_t count = 0, id_sum = 0;
     };
+    using BlockWork = std::map<std::uint64_t, double>;
+    bool deal(const BlockWork& mine, double least_gain);
     Ledger count_particles(const ParticleSet& particles) const;
     void migrate(ParticleSet& particles, const CellGrid& grid);
     void sort(ParticleSet& particles);

@@ -33,17 +33,18 @@ class CellTable {
 
     std::span<const CellEntry> cells() const { return cells_; }
 
-    /// Calls visit(cell, runs) for the selected own cells in order; `runs` covers the particles of all
-    /// cells within reach, the cell's own included, in canonical order.
+    /// Calls visit(cell, runs, k) for the selected own cells in order, k counting all own cells; `runs`
+    /// covers the particles of all cells within reach, the cell's own included, in canonical order.
     template <class Visit>
     void for_each_own(Cells which, Visit&& visit) const {
         Cursors cursors = start();
-        for (std::size_t c = 0; c < cells_.size(); ++c) {
-            const CellEntry& cell = cells_[c];
+        std::size_t own = 0;
+        for (const CellEntry& cell : cells_) {
             if (cell.is_copy) continue;
+            const std::size_t k = own++;
             if (which == Cells::interior && cell.touches_copies) continue;
             if (which == Cells::boundary && !cell.touches_copies) continue;
-            visit(cell, collect(cursors, cell.key));
+            visit(cell, collect(cursors, cell.key), k);
         }
     }
 

@@ -139,8 +139,17 @@ inline constexpr Field<double> velocity_gradient{
     halo,
     "corrected velocity gradient dv_a/dx_b at the last evaluation"};
 
+inline constexpr Field<double> next_smoothing_length{
+    "next_smoothing_length", "m", scalar, work, owner, "smoothing length for the next step"};
 inline constexpr Field<double> predicted_velocity{
     "predicted_velocity", "m s-1", vector, work, halo, "velocity predicted to the time of evaluation"};
+inline constexpr Field<double> predicted_energy{
+    "predicted_energy",
+    "J kg-1",
+    scalar,
+    work,
+    owner,
+    "specific internal energy predicted to the time of evaluation"};
 inline constexpr Field<double> predicted_density{
     "predicted_density", "kg m-3", scalar, work, halo, "density predicted to the time of evaluation"};
 inline constexpr Field<double> pressure{

@@ -80,7 +80,7 @@ void evaluate(const EquationOfState& eos, std::span<const double> density,
         eos);
 }
 
-ScanResult scan(const Tillotson& eos, Range density_ratio, Range energy) {
+ScanResult scan(const Tillotson& eos, Interval density_ratio, Interval energy) {
     constexpr int densities = 400, energies = 200;
     ScanResult result;
     result.worst_c2 = std::numeric_limits<double>::infinity();

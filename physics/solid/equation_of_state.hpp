@@ -159,7 +159,7 @@ void evaluate(const EquationOfState& eos, std::span<const double> density,
               std::span<double> sound_speed, std::span<const std::uint8_t> body, std::uint8_t which);
 
 /// Ends of an interval.
-struct Range {
+struct Interval {
     double low, high;
 };
 
@@ -177,6 +177,6 @@ struct ScanResult {
 
 /// Looks for c^2 < 0 on a grid over rho/rho0 in `density_ratio` (equal steps) and u in `energy` [J/kg] (0 or
 /// the lower end, then equal steps of the logarithm from a thousandth of E_iv). Takes a few milliseconds.
-ScanResult scan(const Tillotson& eos, Range density_ratio = {0.02, 4.0}, Range energy = {0, 1e9});
+ScanResult scan(const Tillotson& eos, Interval density_ratio = {0.02, 4.0}, Interval energy = {0, 1e9});
 
 }  // namespace talus

@@ -1,0 +1,79 @@
+#include <cmath>
+
+#include "physics/sph/pass_support.hpp"
+#include "physics/sph/passes.hpp"
+
+namespace talus::sph {
+
+namespace {
+
+/// sum_j m_j W(r_ij, h) over partners within the kernel's support and the particle itself.
+template <int D, class Kernel>
+class DensitySum {
+  public:
+    DensitySum(const ParticleSet& particles, const Kernel& kernel)
+        : kernel_(kernel),
+          position_(components<D>(particles, field::position)),
+          mass_(particles.data(field::mass)) {}
+
+    double operator()(std::uint32_t i, std::span<const Run> runs, double h) {
+        const double range = kernel_.support() * h, inverse_h = 1 / h;
+        partners_.find(position_, i, runs, [=](std::uint32_t) { return range * range; });
+        x_.gather(partners_, position_);
+        partners_.gather(mass_, m_);
+        const auto x = x_.data();
+        const double* m = m_.data();
+        std::array<double, D> x_i;
+        for (int d = 0; d < D; ++d) x_i[d] = position_[d][i];
+        const Kernel kernel = kernel_;
+        double total = 0;
+#pragma omp simd reduction(+ : total)
+        for (std::size_t k = 0; k < partners_.count(); ++k) {
+            double r2 = 0;
+            for (int d = 0; d < D; ++d) r2 += (x_i[d] - x[d][k]) * (x_i[d] - x[d][k]);
+            total += m[k] * kernel.value(r2, inverse_h);
+        }
+        return total + mass_[i] * kernel_.value(0, inverse_h);
+    }
+
+  private:
+    const Kernel kernel_;
+    std::array<const double*, D> position_;
+    const double* mass_;
+    Partners<D> partners_;
+    PartnerValues<D> x_;
+    AlignedValues m_;
+};
+
+template <int D, class Kernel>
+void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
+         const Kernel& kernel) {
+    DensitySum<D, Kernel> sum(particles, kernel);
+    const double* mass = particles.data(field::mass);
+    const double* h = particles.data(field::smoothing_length);
+    double* density = particles.data(field::predicted_density);
+    double* next_h =
+        settings.variable_smoothing_length ? particles.data(field::next_smoothing_length) : nullptr;
+    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+        for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+            if (settings.density == DensityMethod::summation) density[i] = sum(i, runs, h[i]);
+            if (!next_h) continue;
+            const double smoothed = sum(i, runs, settings.smoothing_widening * h[i]);
+            next_h[i] = settings.eta * std::pow(mass[i] / smoothed, 1.0 / D);
+            if (settings.largest_smoothing_length > 0)
+                next_h[i] = std::min(next_h[i], settings.largest_smoothing_length);
+        }
+    });
+}
+
+}  // namespace
+
+void density_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
+    with_dimension(particles, [&](auto dimension) {
+        constexpr int D = dimension;
+        with_kernel<D>(settings,
+                       [&](const auto& kernel) { run<D>(particles, table, which, settings, kernel); });
+    });
+}
+
+}  // namespace talus::sph

@@ -1,0 +1,12 @@
+#include "physics/sph/godunov_pass.hpp"
+
+namespace talus::sph {
+
+void godunov_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
+                  double time_step, PassCount& count) {
+    with_dimension(particles, [&](auto dimension) {
+        run_godunov<dimension>(particles, table, which, settings, time_step, count);
+    });
+}
+
+}  // namespace talus::sph

@@ -1,0 +1,159 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace talus::sph {
+
+/// exp(-x) for 0 <= x <= 10 to 1e-14, of additions and multiplications alone so that pair loops vectorise:
+/// a polynomial for exp(-x/32), squared five times.
+inline double exp_minus(double x) {
+    constexpr double centre = 0.15625;
+    const double z = centre - x * (1.0 / 32);
+    double p = 1.0 / 3628800;
+    p = p * z + 1.0 / 362880;
+    p = p * z + 1.0 / 40320;
+    p = p * z + 1.0 / 5040;
+    p = p * z + 1.0 / 720;
+    p = p * z + 1.0 / 120;
+    p = p * z + 1.0 / 24;
+    p = p * z + 1.0 / 6;
+    p = p * z + 0.5;
+    p = p * z + 1;
+    p = p * z + 1;
+    constexpr double exp_minus_centre = 0.8553453273074225;
+    p *= exp_minus_centre;
+    p *= p;
+    p *= p;
+    p *= p;
+    p *= p;
+    return p * p;
+}
+
+/// A kernel W(r, h) in D dimensions has a support radius support() * h and gives
+///   value(r2, inverse_h):  W [1/m^D]
+///   factor(r2, inverse_h): (1/r) dW/dr [1/m^(D+2)], so that grad_i W_ij = factor * (x_i - x_j).
+/// r2 is the squared distance [m2], inside the support.
+
+/// Gaussian exp(-r^2/h^2), cut at `cutoff` smoothing lengths and lowered by its value there, so that it ends
+/// continuously, and normalised so that its integral, and with it the first moment of its gradient, are
+/// exact. Uncut: S. Inutsuka, J. Comput. Phys. 179 (2002) 238, eq. 3.
+template <int D>
+struct Gaussian {
+    explicit Gaussian(double cutoff_) : cutoff(cutoff_), edge(std::exp(-cutoff_ * cutoff_)) {
+        using std::numbers::pi;
+        const double q = cutoff, root_pi = std::sqrt(pi);
+        double inside = std::erf(q);  // share of the uncut Gaussian's integral within the cut
+        double volume = 2 * q;        // of the ball, with h = 1
+        if (D == 2) {
+            inside = 1 - edge;
+            volume = pi * q * q;
+        }
+        if (D == 3) {
+            inside = std::erf(q) - 2 / root_pi * q * edge;
+            volume = 4.0 / 3 * pi * q * q * q;
+        }
+        norm = 1 / (std::pow(root_pi, D) * inside - volume * edge);
+    }
+
+    double support() const { return cutoff; }
+    double value(double r2, double inverse_h) const {
+        double scale = norm * inverse_h;
+        for (int d = 1; d < D; ++d) scale *= inverse_h;
+        return scale * (exp_minus(r2 * inverse_h * inverse_h) - edge);
+    }
+    double factor(double r2, double inverse_h) const {
+        const double inverse_h2 = inverse_h * inverse_h;
+        double scale = -2 * norm * inverse_h2 * inverse_h;
+        for (int d = 1; d < D; ++d) scale *= inverse_h;
+        return scale * exp_minus(r2 * inverse_h2);
+    }
+
+    double cutoff, edge, norm;
+};
+
+/// Kernels with support 2h, as w(q)/h^D, q = r/h: `shape` is w without its constant, `slope` is w'(q)/q.
+template <int D, class Derived>
+struct CompactKernel {
+    double support() const { return 2; }
+    double value(double r2, double inverse_h) const {
+        const double q = std::sqrt(r2) * inverse_h;
+        double scale = Derived::norm * inverse_h;
+        for (int d = 1; d < D; ++d) scale *= inverse_h;
+        return scale * Derived::shape(q);
+    }
+    double factor(double r2, double inverse_h) const {
+        const double q = std::sqrt(r2) * inverse_h;
+        double scale = Derived::norm * inverse_h * inverse_h * inverse_h;
+        for (int d = 1; d < D; ++d) scale *= inverse_h;
+        return scale * Derived::slope(q);
+    }
+};
+
+/// Cubic spline M4. J. J. Monaghan, J. C. Lattanzio, Astron. Astrophys. 149 (1985) 135, eq. 21.
+template <int D>
+struct CubicSpline : CompactKernel<D, CubicSpline<D>> {
+    static constexpr double norm = D == 1   ? 2.0 / 3
+                                   : D == 2 ? 10 / (7 * std::numbers::pi)
+                                            : 1 / std::numbers::pi;
+    static double shape(double q) {
+        const double outer = std::max(2 - q, 0.0), inner = std::max(1 - q, 0.0);
+        return 0.25 * outer * outer * outer - inner * inner * inner;
+    }
+    static double slope(double q) {
+        const double outer = std::max(2 - q, 0.0);
+        const double far = -0.75 * outer * outer / std::max(q, 1e-300);
+        return q < 1 ? -3 + 2.25 * q : far;
+    }
+};
+
+/// Wendland's functions in the form of W. Dehnen, H. Aly, Mon. Not. R. Astron. Soc. 425 (2012) 1068, table 1,
+/// with support 2h. x = 1 - q/2.
+template <int D>
+struct WendlandC2 : CompactKernel<D, WendlandC2<D>> {
+    static constexpr double norm = D == 1   ? 5.0 / 8
+                                   : D == 2 ? 7 / (4 * std::numbers::pi)
+                                            : 21 / (16 * std::numbers::pi);
+    static double shape(double q) {
+        const double x = std::max(1 - 0.5 * q, 0.0), x3 = x * x * x;
+        return D == 1 ? x3 * (1 + 1.5 * q) : x3 * x * (1 + 2 * q);
+    }
+    static double slope(double q) {
+        const double x = std::max(1 - 0.5 * q, 0.0);
+        return D == 1 ? -3 * x * x : -5 * x * x * x;
+    }
+};
+
+template <int D>
+struct WendlandC4 : CompactKernel<D, WendlandC4<D>> {
+    static constexpr double norm = D == 1   ? 3.0 / 4
+                                   : D == 2 ? 9 / (4 * std::numbers::pi)
+                                            : 495 / (256 * std::numbers::pi);
+    static double shape(double q) {
+        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+        return D == 1 ? x4 * x * (1 + 2.5 * q + 2 * q * q) : x4 * x2 * (1 + 3 * q + 35.0 / 12 * q * q);
+    }
+    static double slope(double q) {
+        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+        return D == 1 ? -3.5 * x4 * (1 + 2 * q) : -14.0 / 3 * x4 * x * (1 + 2.5 * q);
+    }
+};
+
+template <int D>
+struct WendlandC6 : CompactKernel<D, WendlandC6<D>> {
+    static constexpr double norm = D == 1   ? 55.0 / 64
+                                   : D == 2 ? 78 / (28 * std::numbers::pi)
+                                            : 1365 / (512 * std::numbers::pi);
+    static double shape(double q) {
+        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+        return D == 1 ? x4 * x2 * x * (1 + 3.5 * q + 19.0 / 4 * q * q + 21.0 / 8 * q * q * q)
+                      : x4 * x4 * (1 + 4 * q + 25.0 / 4 * q * q + 4 * q * q * q);
+    }
+    static double slope(double q) {
+        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+        return D == 1 ? -0.75 * x4 * x2 * (6 + 18 * q + 17.5 * q * q)
+                      : -5.5 * x4 * x2 * x * (1 + 3.5 * q + 4 * q * q);
+    }
+};
+
+}  // namespace talus::sph

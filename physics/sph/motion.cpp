@@ -1,0 +1,166 @@
+#include "physics/sph/motion.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "physics/solid/stress_update.hpp"
+#include "physics/sph/pass_support.hpp"
+
+namespace talus::sph {
+
+namespace {
+
+/// Specific internal energy after `time`, the velocity before that being v: total work less the kinetic part.
+template <int D>
+double advanced_energy(double energy, double power, const std::array<double, D>& v,
+                       const std::array<double, D>& a, double time) {
+    double kinetic = 0;
+    for (int d = 0; d < D; ++d) kinetic += a[d] * (v[d] + 0.5 * time * a[d]);
+    return energy + time * (power - kinetic);
+}
+
+template <int D>
+double divergence(const std::array<const double*, D * D>& gradient, std::size_t i) {
+    double sum = 0;
+    for (int d = 0; d < D; ++d) sum += gradient[d * D + d][i];
+    return sum;
+}
+
+/// Writes the state moved by `time` into the given fields, which may be those of the state itself.
+template <int D>
+void advance(ParticleSet& particles, std::span<const double> shear_moduli, double time,
+             const Field<double>& to_velocity, const Field<double>& to_energy,
+             const Field<double>& to_density, const Field<double>& to_stress) {
+    const auto v = components<D>(particles, field::velocity),
+               a = components<D>(particles, field::acceleration);
+    const double *power = particles.data(field::specific_power),
+                 *energy = particles.data(field::internal_energy);
+    const auto new_v = components_to_write<D>(particles, to_velocity);
+    double* new_energy = particles.data(to_energy);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        std::array<double, D> v_i, a_i;
+        for (int d = 0; d < D; ++d) {
+            v_i[d] = v[d][i];
+            a_i[d] = a[d][i];
+        }
+        new_energy[i] = advanced_energy<D>(energy[i], power[i], v_i, a_i, time);
+        for (int d = 0; d < D; ++d) new_v[d][i] = v_i[d] + time * a_i[d];
+    }
+
+    if (!particles.has(field::density)) return;
+    const auto gradient = components<D * D>(particles, field::velocity_gradient);
+    const double* density = particles.data(field::density);
+    double* new_density = particles.data(to_density);
+    for (std::size_t i = 0; i < particles.size(); ++i)
+        new_density[i] = density[i] * std::exp(-divergence<D>(gradient, i) * time);
+
+    if (!particles.has(field::deviatoric_stress)) return;
+    constexpr int N = symmetric_count<D>;
+    const auto stress = components<N>(particles, field::deviatoric_stress);
+    const auto new_stress = components_to_write<N>(particles, to_stress);
+    const std::uint8_t* body = particles.data(field::body);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        std::array<double, N> s_i;
+        std::array<double, D * D> gradient_i;
+        for (int c = 0; c < N; ++c) s_i[c] = stress[c][i];
+        for (int c = 0; c < D * D; ++c) gradient_i[c] = gradient[c][i];
+        const auto advanced = advanced_stress<D>(s_i, gradient_i, shear_moduli[body[i]], time);
+        for (int c = 0; c < N; ++c) new_stress[c][i] = advanced[c];
+    }
+}
+
+}  // namespace
+
+void kick(ParticleSet& particles, std::span<const double> shear_moduli, double time) {
+    with_dimension(particles, [&](auto dimension) {
+        advance<dimension>(particles, shear_moduli, time, field::velocity, field::internal_energy,
+                           field::density, field::deviatoric_stress);
+    });
+}
+
+void predict(ParticleSet& particles, std::span<const double> shear_moduli, double time) {
+    with_dimension(particles, [&](auto dimension) {
+        advance<dimension>(particles, shear_moduli, time, field::predicted_velocity, field::predicted_energy,
+                           field::predicted_density, field::predicted_stress);
+    });
+}
+
+void drift(ParticleSet& particles, double time) {
+    for (int axis = 0; axis < particles.dimension(); ++axis) {
+        double* x = particles.data(field::position, axis);
+        const double* v = particles.data(field::velocity, axis);
+        for (std::size_t i = 0; i < particles.size(); ++i) x[i] += v[i] * time;
+    }
+}
+
+namespace {
+
+template <int D>
+StepLimit stable_step(const ParticleSet& particles, std::span<const double> shear_moduli,
+                      const Settings& settings) {
+    const double* c = particles.data(field::sound_speed);
+    const double* density = particles.data(field::predicted_density);
+    const double* h = particles.data(field::smoothing_length);
+    const std::uint8_t* body = particles.data(field::body);
+    const auto a = components<D>(particles, field::acceleration);
+    const bool has_gradient = particles.has(field::velocity_gradient);
+    std::array<const double*, D * D> gradient{};
+    if (has_gradient) gradient = components<D * D>(particles, field::velocity_gradient);
+    const double viscous = settings.formulation == Formulation::standard ? 0.6 * settings.viscosity_alpha : 0;
+    double courant = std::numeric_limits<double>::infinity(), accelerated = courant;
+    std::size_t courant_at = 0, accelerated_at = 0;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        double acceleration2 = 0;
+        for (int d = 0; d < D; ++d) acceleration2 += a[d][i] * a[d][i];
+        const double elastic = shear_moduli[body[i]] > 0 ? 4.0 / 3 * shear_moduli[body[i]] / density[i] : 0;
+        const double speed = std::sqrt(c[i] * c[i] + elastic) * (1 + viscous) +
+                             (has_gradient ? h[i] * std::abs(divergence<D>(gradient, i)) : 0);
+        const double by_speed = h[i] / speed, by_acceleration = std::sqrt(h[i] / std::sqrt(acceleration2));
+        if (by_speed < courant) {
+            courant = by_speed;
+            courant_at = i;
+        }
+        if (by_acceleration < accelerated) {
+            accelerated = by_acceleration;
+            accelerated_at = i;
+        }
+    }
+    const std::uint64_t* id = particles.data(field::id);
+    if (particles.size() == 0) return {courant, 0, "no particles"};
+    if (courant < accelerated) return {settings.courant * courant, id[courant_at], "sound"};
+    return {settings.courant * accelerated, id[accelerated_at], "acceleration"};
+}
+
+}  // namespace
+
+StepLimit stable_time_step(const ParticleSet& particles, std::span<const double> shear_moduli,
+                           const Settings& settings) {
+    StepLimit limit{};
+    with_dimension(particles, [&](auto dimension) {
+        limit = stable_step<dimension>(particles, shear_moduli, settings);
+    });
+    return limit;
+}
+
+NotFinite find_not_finite(const ParticleSet& particles) {
+    NotFinite found{0, nullptr};
+    std::size_t first = particles.size();
+    for (const Column& column : particles.columns()) {
+        if (column.info->role != Role::state || column.info->type != ValueType::f64) continue;
+        for (const auto& component : column.components) {
+            const auto* values = reinterpret_cast<const double*>(component.data());
+            double sum = 0;  // 0 unless a value is infinite or NaN
+#pragma omp simd reduction(+ : sum)
+            for (std::size_t i = 0; i < particles.size(); ++i) sum += values[i] * 0.0;
+            if (sum == 0) continue;
+            for (std::size_t i = 0; i < first; ++i)
+                if (!std::isfinite(values[i])) {
+                    first = i;
+                    found = {particles.data(field::id)[i], column.info};
+                }
+        }
+    }
+    return found;
+}
+
+}  // namespace talus::sph

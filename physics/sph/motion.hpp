@@ -1,0 +1,45 @@
+#pragma once
+#include <span>
+
+#include "domain/particles.hpp"
+#include "physics/sph/settings.hpp"
+
+namespace talus::sph {
+
+/// Leapfrog, kick-drift-kick: the state lives in velocity, internal_energy, density and deviatoric_stress;
+/// the pair loops see it predicted to the time of evaluation (predicted_* fields). Energy is changed so that
+/// the kinetic and internal energies together gain exactly `specific_power * time`, the work of antisymmetric
+/// pair forces, which sums to zero over all particles: total energy is conserved to rounding. Fields that a
+/// set does not have (density when summed, stress in fluids) are left out.
+
+/// Moves the state `time` forward with the rates of the last evaluation. `shear_moduli`: one a body [Pa].
+void kick(ParticleSet& particles, std::span<const double> shear_moduli, double time);
+
+/// Positions: x += v time.
+void drift(ParticleSet& particles, double time);
+
+/// Fills the predicted fields with the state moved `time` forward by the rates of the last evaluation.
+void predict(ParticleSet& particles, std::span<const double> shear_moduli, double time);
+
+/// What limits the time step, for messages.
+struct StepLimit {
+    double time_step;  ///< [s]
+    std::uint64_t id;  ///< of the particle that sets it
+    const char* reason;
+};
+
+/// Longest stable step over the own particles: Courant's criterion with the longitudinal elastic sound speed,
+/// dt = C h/(c_l + h |div v|), and the acceleration's, dt = C sqrt(h/|a|).
+/// J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, section 10.3.
+StepLimit stable_time_step(const ParticleSet& particles, std::span<const double> shear_moduli,
+                           const Settings& settings);
+
+/// Id of the first own particle with a rate or a state that is not finite, and the field's name; nullptr if
+/// none.
+struct NotFinite {
+    std::uint64_t id;
+    const FieldInfo* field;
+};
+NotFinite find_not_finite(const ParticleSet& particles);
+
+}  // namespace talus::sph

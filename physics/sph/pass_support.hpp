@@ -1,0 +1,78 @@
+#pragma once
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "domain/particles.hpp"
+#include "domain/partners.hpp"
+#include "physics/sph/kernels.hpp"
+#include "physics/sph/settings.hpp"
+
+namespace talus::sph {
+
+/// Pointers to all components of a field.
+template <int N, class T>
+std::array<const T*, N> components(const ParticleSet& particles, const Field<T>& field) {
+    std::array<const T*, N> pointers;
+    for (int c = 0; c < N; ++c) pointers[static_cast<std::size_t>(c)] = particles.data(field, c);
+    return pointers;
+}
+template <int N, class T>
+std::array<T*, N> components_to_write(ParticleSet& particles, const Field<T>& field) {
+    std::array<T*, N> pointers;
+    for (int c = 0; c < N; ++c) pointers[static_cast<std::size_t>(c)] = particles.data(field, c);
+    return pointers;
+}
+
+/// Gathered values of all components of a field for one particle's partners.
+template <int N>
+class PartnerValues {
+  public:
+    template <int D, class T>
+    void gather(const Partners<D>& partners, const std::array<const T*, N>& from) {
+        for (int c = 0; c < N; ++c)
+            partners.gather(from[static_cast<std::size_t>(c)], values_[static_cast<std::size_t>(c)]);
+    }
+    /// Component arrays, valid until the next gather.
+    std::array<const double*, N> data() {
+        std::array<const double*, N> pointers;
+        for (int c = 0; c < N; ++c)
+            pointers[static_cast<std::size_t>(c)] = values_[static_cast<std::size_t>(c)].data();
+        return pointers;
+    }
+
+  private:
+    std::array<AlignedValues, N> values_;
+};
+
+/// Calls f(kernel) with the kernel object that the settings name.
+template <int D, class F>
+void with_kernel(const Settings& settings, F&& f) {
+    switch (settings.kernel) {
+        case KernelKind::gaussian:
+            return f(Gaussian<D>(settings.cutoff));
+        case KernelKind::cubic_spline:
+            return f(CubicSpline<D>{});
+        case KernelKind::wendland_c2:
+            return f(WendlandC2<D>{});
+        case KernelKind::wendland_c4:
+            return f(WendlandC4<D>{});
+        case KernelKind::wendland_c6:
+            return f(WendlandC6<D>{});
+    }
+}
+
+/// Calls f(std::integral_constant<int, D>) for the set's dimension.
+template <class F>
+void with_dimension(const ParticleSet& particles, F&& f) {
+    switch (particles.dimension()) {
+        case 1:
+            return f(std::integral_constant<int, 1>{});
+        case 2:
+            return f(std::integral_constant<int, 2>{});
+        default:
+            return f(std::integral_constant<int, 3>{});
+    }
+}
+
+}  // namespace talus::sph

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <chrono>
+#include <string_view>
+
+namespace talus {
+
+/// Parts of a time step, for the table of where time went.
+enum class Phase : unsigned char {
+    decompose,
+    halo,
+    density,
+    gradients,
+    forces,
+    material,
+    motion,
+    wait,
+    output,
+    count
+};
+
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(Phase::count)> phase_names = {
+    "decompose", "halo", "density", "gradients", "forces", "material", "motion", "wait for others", "output"};
+
+/// Wall time spent in each phase on this rank.
+class Phases {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    /// Counts the time from now until the next call to another phase.
+    void enter(Phase phase) {
+        const auto now = Clock::now();
+        if (running_)
+            seconds_[static_cast<std::size_t>(current_)] +=
+                std::chrono::duration<double>(now - since_).count();
+        current_ = phase;
+        since_ = now;
+        running_ = true;
+    }
+    void stop() {
+        enter(current_);
+        running_ = false;
+    }
+    const std::array<double, static_cast<std::size_t>(Phase::count)>& seconds() const { return seconds_; }
+
+  private:
+    std::array<double, static_cast<std::size_t>(Phase::count)> seconds_{};
+    Phase current_ = Phase::motion;
+    Clock::time_point since_{};
+    bool running_ = false;
+};
+
+}  // namespace talus

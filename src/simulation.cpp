@@ -1,0 +1,231 @@
+#include "src/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "comm/exact_sum.hpp"
+#include "domain/boundary.hpp"
+#include "physics/sph/pass_support.hpp"
+
+namespace talus {
+
+namespace {
+constexpr int cells_per_radius = 2;
+
+bool has_strength(const Setup& setup) {
+    return std::any_of(setup.materials.begin(), setup.materials.end(),
+                       [](const Material& material) { return material.shear_modulus > 0; });
+}
+bool has_fracture(const Setup& setup) {
+    return std::any_of(setup.materials.begin(), setup.materials.end(),
+                       [](const Material& material) { return material.fracture.has_value(); });
+}
+}  // namespace
+
+void add_fields(ParticleSet& particles, const Setup& setup) {
+    const sph::Settings& sph = setup.sph;
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::mass, &field::internal_energy, &field::smoothing_length, &field::body,
+             &field::acceleration, &field::specific_power, &field::predicted_velocity,
+             &field::predicted_energy, &field::predicted_density, &field::pressure, &field::sound_speed})
+        particles.add(*info);
+    const bool continuity = sph.density == sph::DensityMethod::continuity;
+    if (continuity) particles.add(field::density);
+    if (continuity || sph.formulation == sph::Formulation::godunov) particles.add(field::velocity_gradient);
+    if (sph.variable_smoothing_length) particles.add(field::next_smoothing_length);
+    if (sph.formulation == sph::Formulation::godunov) {
+        particles.add(field::pressure_gradient);
+        particles.add(field::volume_gradient);
+    }
+    if (sph.uses(sph::Interpolation::quintic)) particles.add(field::volume_curvature);
+    if (has_strength(setup)) {
+        particles.add(field::deviatoric_stress);
+        particles.add(field::predicted_stress);
+    }
+    if (has_fracture(setup))
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &field::damage, &field::flaw_threshold, &field::flaw_exponent, &field::flaw_count})
+            particles.add(*info);
+}
+
+Simulation::Simulation(const Communicator& comm, Setup setup, ParticleSet particles)
+    : comm_(comm),
+      setup_(std::move(setup)),
+      particles_(std::move(particles)),
+      decomposition_(comm, setup_.partition) {
+    for (const Material& material : setup_.materials) shear_moduli_.push_back(material.shear_modulus);
+    decomposition_.expect(particles_);
+}
+
+double Simulation::interaction_radius() const {
+    double largest = 0;
+    for (const double h : particles_.own(field::smoothing_length)) largest = std::max(largest, h);
+    const double support =
+        std::max(setup_.sph.force_support(), setup_.sph.kernel_support() * setup_.sph.smoothing_widening);
+    return comm_.all_max(largest) * support;
+}
+
+void Simulation::arrange() {
+    if (!grid_ || setup_.sph.variable_smoothing_length) {
+        double radius = interaction_radius();
+        if (setup_.sph.variable_smoothing_length) radius = CellGrid::ladder_radius(radius);
+        if (!grid_ || radius != grid_radius_) {
+            grid_ = std::make_unique<CellGrid>(setup_.box, radius, cells_per_radius);
+            grid_radius_ = radius;
+            decomposition_.divide(particles_, *grid_);
+        }
+    }
+    decomposition_.arrange(particles_, *grid_);
+}
+
+void Simulation::start() {
+    arrange();
+    evaluate(0, 0);
+    check_finite();
+    choose_time_step();
+    time_step_ = std::min(time_step_, setup_.first_time_step);
+}
+
+void Simulation::resume(double time, double time_step, std::uint64_t step) {
+    time_ = time;
+    time_step_ = time_step;
+    step_ = step;
+    arrange();
+}
+
+void Simulation::step() {
+    const double dt = time_step_;
+    phases_.enter(Phase::motion);
+    sph::kick(particles_, shear_moduli_, dt / 2);
+    sph::drift(particles_, dt);
+    apply_boundaries(particles_, setup_.box);
+    phases_.enter(Phase::decompose);
+    arrange();
+    if (setup_.rebalance_interval > 0 && step_ % static_cast<std::uint64_t>(setup_.rebalance_interval) == 0)
+        balance();
+    evaluate(dt / 2, dt);
+    phases_.enter(Phase::motion);
+    sph::kick(particles_, shear_moduli_, dt / 2);
+    time_ += dt;
+    ++step_;
+    check_finite();
+    choose_time_step();
+    phases_.stop();
+}
+
+/// Everything that follows from positions and the predicted state: density, pressure, gradients, forces. Each
+/// pass first visits the cells that need no copies, while those are on their way.
+void Simulation::evaluate(double time_ahead, double damage_time) {
+    const sph::Settings& settings = setup_.sph;
+    const CellTable& table = decomposition_.table();
+    Halo& halo = decomposition_.halo();
+    const auto overlapped = [&](Phase phase, std::initializer_list<const FieldInfo*> fields, auto&& pass) {
+        phases_.enter(Phase::halo);
+        halo.begin(particles_, fields);
+        phases_.enter(phase);
+        pass(Cells::interior);
+        phases_.enter(Phase::halo);
+        halo.finish();
+        phases_.enter(phase);
+        pass(Cells::boundary);
+    };
+
+    phases_.enter(Phase::motion);
+    sph::predict(particles_, shear_moduli_, time_ahead);
+    if (settings.density == sph::DensityMethod::summation || settings.variable_smoothing_length) {
+        overlapped(Phase::density, {&field::position, &field::mass},
+                   [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });
+        if (settings.variable_smoothing_length) {
+            const auto next = particles_.own(field::next_smoothing_length);
+            std::copy(next.begin(), next.end(), particles_.data(field::smoothing_length));
+        }
+    }
+    phases_.enter(Phase::material);
+    material_response(damage_time);
+    if (particles_.has(field::velocity_gradient))
+        overlapped(Phase::gradients,
+                   {&field::position, &field::mass, &field::smoothing_length, &field::body,
+                    &field::predicted_velocity, &field::predicted_density, &field::pressure,
+                    &field::sound_speed, &field::predicted_stress},
+                   [&](Cells cells) { sph::gradient_pass(particles_, table, cells, settings); });
+    if (particles_.has(field::volume_curvature))
+        overlapped(Phase::gradients, {&field::volume_gradient},
+                   [&](Cells cells) { sph::curvature_pass(particles_, table, cells, settings); });
+
+    pass_count_.pairs = 0;
+    pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
+    if (settings.formulation == sph::Formulation::godunov)
+        overlapped(Phase::forces,
+                   {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
+                    &field::volume_curvature},
+                   [&](Cells cells) {
+                       sph::godunov_pass(particles_, table, cells, settings, time_step_, pass_count_);
+                   });
+    else
+        overlapped(
+            Phase::forces,
+            {&field::position, &field::mass, &field::smoothing_length, &field::predicted_velocity,
+             &field::predicted_density, &field::pressure, &field::sound_speed, &field::predicted_stress},
+            [&](Cells cells) { sph::standard_pass(particles_, table, cells, settings, pass_count_); });
+    pairs_ += pass_count_.pairs;
+}
+
+/// Pressure and sound speed, the limit of strength, growth of damage over `damage_time`, and what damage
+/// leaves of tension.
+void Simulation::material_response(double damage_time) {
+    damage_limit_ = std::numeric_limits<double>::infinity();
+    const auto bodies = std::as_const(particles_).own(field::body);
+    const auto energy = std::as_const(particles_).own(field::predicted_energy);
+    const auto density = std::as_const(particles_).own(field::predicted_density);
+    const auto pressure = particles_.own(field::pressure), sound = particles_.own(field::sound_speed);
+    const bool cracks = particles_.has(field::damage);
+    std::span<const double> damage;
+    if (cracks) damage = particles_.own(field::damage);
+    for (std::size_t b = 0; b < setup_.materials.size(); ++b) {
+        const Material& material = setup_.materials[b];
+        const auto body = static_cast<std::uint8_t>(b);
+        talus::evaluate(material.eos, density, energy, pressure, sound, bodies, body);
+        if (material.shear_modulus > 0) {
+            const StrengthState state{pressure, energy, damage};
+            limit_stress(material.strength, state, stress_columns(particles_, field::predicted_stress),
+                         bodies, body);
+            limit_stress(material.strength, state, stress_columns(particles_, field::deviatoric_stress),
+                         bodies, body);
+        }
+        if (!material.fracture) continue;
+        const FractureState state{{particles_.own(field::flaw_threshold),
+                                   particles_.own(field::flaw_exponent), particles_.own(field::flaw_count)},
+                                  pressure,
+                                  stress_columns(std::as_const(particles_), field::predicted_stress),
+                                  particles_.own(field::smoothing_length),
+                                  setup_.sph.kernel_support()};
+        const CrackGrowth growth = material.crack_growth();
+        grow_damage(growth, state, damage_time, particles_.own(field::damage), bodies, body);
+        damage_limit_ = std::min(
+            damage_limit_, damage_time_step(growth, state, setup_.largest_damage_step, damage, bodies, body));
+    }
+    if (!cracks) return;
+    for (std::size_t i = 0; i < particles_.size(); ++i)
+        if (pressure[i] < 0) pressure[i] *= 1 - damage[i];
+}
+
+void Simulation::choose_time_step() {
+    limit_ = sph::stable_time_step(particles_, shear_moduli_, setup_.sph);
+    if (damage_limit_ < limit_.time_step) limit_ = {damage_limit_, limit_.id, "damage growth"};
+    phases_.enter(Phase::wait);
+    time_step_ = comm_.all_min(limit_.time_step);
+}
+
+void Simulation::check_finite() {
+    const sph::NotFinite found = sph::find_not_finite(particles_);
+    std::string message;
+    if (found.field)
+        message = fmt::format("step {}, time {} s: {} of particle {} in set '{}' is not finite", step_, time_,
+                              found.field->name, found.id, particles_.name());
+    phases_.enter(Phase::wait);
+    comm_.all_agree(1, message);
+}
+
+}  // namespace talus

@@ -1,0 +1,100 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "comm/communicator.hpp"
+#include "comm/decomposition.hpp"
+#include "domain/box.hpp"
+#include "domain/particles.hpp"
+#include "physics/solid/material.hpp"
+#include "physics/sph/motion.hpp"
+#include "physics/sph/passes.hpp"
+#include "physics/sph/settings.hpp"
+#include "src/phases.hpp"
+
+namespace talus {
+
+/// Everything that defines a run besides the particles: what a scene says, resolved.
+struct Setup {
+    Box box;
+    sph::Settings sph;
+    std::vector<Material> materials;  ///< one a body, in order
+    PartitionMethod partition = PartitionMethod::metis;
+    double largest_damage_step = 0.1;  ///< damage may grow by this much a step [1]
+    double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
+    int rebalance_interval = 10;  ///< steps between looks at the imbalance
+};
+
+/// Adds to a set the fields that the setup's models need, no more.
+void add_fields(ParticleSet& particles, const Setup& setup);
+
+/// Totals over all particles, exact sums rounded once: the same bits on any number of ranks.
+struct Totals {
+    double mass, kinetic_energy, internal_energy;
+    std::array<double, 3> momentum, angular_momentum;
+    double greatest_speed, least_density, greatest_density, least_pressure, greatest_pressure, mean_damage;
+    std::uint64_t particles;
+};
+
+/// One particle set under SPH: solids and gases of one or several bodies.
+class Simulation {
+  public:
+    /// `particles` hold their share of the initial state or of a checkpoint, on any ranks, with the fields of
+    /// add_fields() set; the position must lie in the box along closed axes. Collective.
+    Simulation(const Communicator& comm, Setup setup, ParticleSet particles);
+
+    /// First evaluation of a new run at time 0. Collective.
+    void start();
+    /// Goes on from a checkpoint's state: particles as they were saved, with the rates. Collective.
+    void resume(double time, double time_step, std::uint64_t step);
+
+    /// One time step. Throws AgreedError (exit code 1) if a value is not finite or a particle was lost.
+    /// Collective.
+    void step();
+
+    double time() const { return time_; }            ///< [s]
+    double time_step() const { return time_step_; }  ///< of the next step [s]
+    std::uint64_t step_count() const { return step_; }
+    const ParticleSet& particles() const { return particles_; }
+    ParticleSet& particles() { return particles_; }
+    const Setup& setup() const { return setup_; }
+    const Communicator& comm() const { return comm_; }
+    Decomposition& decomposition() { return decomposition_; }
+    std::uint64_t total_particles() const { return decomposition_.total_particles(); }
+    /// Pairs evaluated by this rank in the force pass since the start.
+    std::uint64_t pairs() const { return pairs_; }
+    Phases& phases() { return phases_; }
+    /// What set the next time step, as far as this rank knows.
+    const sph::StepLimit& step_limit() const { return limit_; }
+    /// Largest interaction radius [m], over all particles. Collective.
+    double interaction_radius() const;
+
+    Totals totals() const;
+
+  private:
+    void arrange();
+    void evaluate(double time_ahead, double damage_time);
+    void material_response(double damage_time);
+    void choose_time_step();
+    void check_finite();
+
+    const Communicator& comm_;
+    Setup setup_;
+    std::vector<double> shear_moduli_;
+    ParticleSet particles_;
+    Decomposition decomposition_;
+    std::unique_ptr<CellGrid> grid_;
+    double grid_radius_ = 0;
+    double time_ = 0, time_step_ = 0;
+    std::uint64_t step_ = 0, pairs_ = 0;
+    sph::PassCount pass_count_;
+    double damage_limit_ = std::numeric_limits<double>::infinity();
+    sph::StepLimit limit_{};
+    Phases phases_;
+};
+
+}  // namespace talus
