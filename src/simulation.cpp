@@ -80,6 +80,11 @@ void Simulation::arrange() {
     decomposition_.arrange(particles_, *grid_);
 }
 
+void Simulation::rebalance() {
+    const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
+    if (work_measured_ && interval > 0 && step_ % interval == 0) decomposition_.rebalance(pass_count_.work_of_cell);
+}
+
 void Simulation::start() {
     arrange();
     evaluate(0, 0);
@@ -102,9 +107,8 @@ void Simulation::step() {
     sph::drift(particles_, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
+    rebalance();
     arrange();
-    if (setup_.rebalance_interval > 0 && step_ % static_cast<std::uint64_t>(setup_.rebalance_interval) == 0)
-        balance();
     evaluate(dt / 2, dt);
     phases_.enter(Phase::motion);
     sph::kick(particles_, shear_moduli_, dt / 2);
@@ -170,6 +174,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
              &field::predicted_density, &field::pressure, &field::sound_speed, &field::predicted_stress},
             [&](Cells cells) { sph::standard_pass(particles_, table, cells, settings, pass_count_); });
     pairs_ += pass_count_.pairs;
+    work_measured_ = true;
 }
 
 /// Pressure and sound speed, the limit of strength, growth of damage over `damage_time`, and what damage

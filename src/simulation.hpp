@@ -77,6 +77,7 @@ class Simulation {
 
   private:
     void arrange();
+    void rebalance();
     void evaluate(double time_ahead, double damage_time);
     void material_response(double damage_time);
     void choose_time_step();
@@ -92,6 +93,7 @@ class Simulation {
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     sph::PassCount pass_count_;
+    bool work_measured_ = false;
     double damage_limit_ = std::numeric_limits<double>::infinity();
     sph::StepLimit limit_{};
     Phases phases_;
