@@ -47,7 +47,7 @@ struct LinearEquationOfState {
 /// pressure at rho0. With u = e - q and P_inf = rho0 c0^2 / gamma this is the usual
 /// P = (gamma - 1) rho e - gamma P_inf, so c^2 = gamma (P + P_inf) / rho.
 /// F. H. Harlow, A. A. Amsden, Fluid Dynamics, LA-4700 (1971); R. Menikoff, B. J. Plohr, Rev. Mod. Phys. 61
-/// (1989) 75, section IV.
+/// (1989) 75.
 struct StiffenedGas {
     double gamma;              ///< Grueneisen coefficient + 1 [1]
     double reference_density;  ///< rho0 [kg/m3]
@@ -67,8 +67,8 @@ struct StiffenedGas {
 
 /// Tillotson's equation of state for impacts: a cold and compressed form, a hot expanded form, and between
 /// E_iv and E_cv below the reference density a blend of both, linear in the energy.
-/// J. H. Tillotson, General Atomic report GA-3216 (1962); H. J. Melosh, Impact Cratering (1989), appendix II,
-/// eqs AII.3.3-5; W. Benz, E. Asphaug, Icarus 142 (1999) 5.
+/// J. H. Tillotson, General Atomic report GA-3216 (1962); H. J. Melosh, Impact Cratering (1989), appendix II;
+/// W. Benz, E. Asphaug, Icarus 142 (1999) 5.
 ///
 /// The pressure is continuous everywhere. The sound speed is that of this pressure, exactly, and therefore
 /// continuous at rho0, while across E_iv and E_cv its square jumps by P (P_hot - P_cold) / (rho^2 (E_cv -

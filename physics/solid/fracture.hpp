@@ -37,7 +37,7 @@ struct Flaws {
 
 /// Samples the flaws of any particle of a body without looking at the others.
 ///
-/// Benz & Asphaug (1994, section 3.3.1) drop flaws j = 1, 2, ... of threshold (j/(kV))^(1/m) on random
+/// Benz & Asphaug (1994) drop flaws j = 1, 2, ... of threshold (j/(kV))^(1/m) on random
 /// particles of a body of volume V, until each of its N particles has one. Seen from a particle, j/N are the
 /// points of a Poisson process of unit rate, ended at X = J/N where the last particle got its first flaw:
 /// P(X < x) = (1 - e^-x)^N, the coupon collector's time, ln N + 0.577 in the mean. Given X, particles are

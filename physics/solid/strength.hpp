@@ -16,7 +16,7 @@ inline double thermal_softening(double internal_energy, double melt_energy) {
 }
 
 /// Yield stress independent of the pressure, reduced by heat and damage: sqrt(3 J2) <= Y_M (1 - u/u_melt)
-/// (1 - D). W. Benz, E. Asphaug, Comput. Phys. Commun. 87 (1995) 253, section 2.2, with the radial return of
+/// (1 - D). W. Benz, E. Asphaug, Comput. Phys. Commun. 87 (1995) 253, with the radial return of
 /// L. D. Libersky, A. G. Petschek (1991): S is scaled by Y/sqrt(3 J2), not by its square.
 struct VonMises {
     double yield_stress;                                           ///< Y_M in simple tension [Pa]
@@ -32,8 +32,8 @@ struct VonMises {
 /// Pressure-dependent strength of rock. Intact: Y_i = [Y_0 + mu_i P / (1 + mu_i P/(Y_M - Y_0))] (1 -
 /// u/u_melt); fully damaged: Coulomb friction Y_d = min(mu_d P, Y_i); between: Y = (1 - D) Y_i + D Y_d; P =
 /// max(P, 0). Compared with sqrt(J2). N. Lundborg, Int. J. Rock Mech. Min. Sci. 5 (1968) 427; G. S. Collins,
-/// H. J. Melosh, B. A. Ivanov, Meteorit. Planet. Sci. 39 (2004) 217, eqs 4-7; M. Jutzi, Planet. Space Sci.
-/// 107 (2015) 3, eqs 3-6 (eq. 6 as printed has D - 1 for 1 - D).
+/// H. J. Melosh, B. A. Ivanov, Meteorit. Planet. Sci. 39 (2004) 217; M. Jutzi, Planet. Space Sci.
+/// 107 (2015) 3 (eq. 6 as printed has D - 1 for 1 - D).
 struct Lundborg {
     double cohesion;          ///< Y_0, strength at P = 0 [Pa]
     double limit;             ///< Y_M, strength at P -> infinity [Pa], at least Y_0

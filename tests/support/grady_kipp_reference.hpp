@@ -25,7 +25,7 @@ struct PulledRock {
 /// Failure stress [Pa] of a continuum of cracks, each a sphere growing since its own flaw opened:
 /// D = alpha rate^m t^(m+3), alpha = 8 pi c_g^3 k / ((m+1)(m+2)(m+3)), most stress at D = 1/(m+4).
 /// Proportional to rate^(3/(m+3)). D. E. Grady, M. E. Kipp, Int. J. Rock Mech. Min. Sci. 17 (1980) 147;
-/// H. J. Melosh, E. V. Ryan, E. Asphaug, J. Geophys. Res. 97 (1992) 14735, eqs 6-9.
+/// H. J. Melosh, E. V. Ryan, E. Asphaug, J. Geophys. Res. 97 (1992) 14735.
 inline double classic_failure_stress(const PulledRock& rock, double rate) {
     const double m = rock.weibull_m;
     const double log_alpha = std::log(8 * std::numbers::pi / ((m + 1) * (m + 2) * (m + 3))) +

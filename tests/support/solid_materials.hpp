@@ -77,4 +77,17 @@ inline Tillotson water() {
             .beta = 5};
 }
 
+inline Tillotson nylon() {
+    return {.reference_density = 1185,
+            .a = 0.6,
+            .b = 2,
+            .A = 10.1e9,
+            .B = 33.8e9,
+            .E0 = 7e6,
+            .E_iv = 2e6,
+            .E_cv = 2.4e6,
+            .alpha = 10,
+            .beta = 5};
+}
+
 }  // namespace talus::test

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <string>
 #include <vector>
@@ -21,7 +21,8 @@ struct Named {
 std::vector<Named> all() {
     return {{"basalt", test::basalt()},   {"aluminium", test::aluminium()},
             {"granite", test::granite()}, {"iron", test::iron()},
-            {"ice", test::ice()},         {"water", test::water()}};
+            {"ice", test::ice()},         {"water", test::water()},
+            {"nylon", test::nylon()}};
 }
 
 /// c^2 from differences of the pressure.
@@ -128,10 +129,9 @@ TEST(Tillotson, FloorActsWhereTheSquareIsNegative) {
 
 TEST(Tillotson, ScanFindsTheImaginarySoundSpeedsAndIsFast) {
     for (const auto& [name, eos] : all()) {
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock();  // of the processor: the machine may be busy
         const ScanResult result = scan(eos);
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
         EXPECT_LT(seconds, 0.02) << name;
         EXPECT_GT(result.points, 50000u);
         EXPECT_GT(result.imaginary, 0u) << name;
