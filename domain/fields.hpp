@@ -7,7 +7,7 @@ namespace talus {
 
 /// How many components a field has and how they change under a reflection: a vector's component along
 /// the mirror's normal flips, a tensor's flips once per index along the normal.
-enum class Shape : std::uint8_t { scalar, vector, symmetric_tensor, tensor, position };
+enum class Shape : std::uint8_t { scalar, vector, symmetric_tensor, tensor, point };
 
 /// state: moves with its particle, is saved in checkpoints and hashed. work: recomputed every step.
 enum class Role : std::uint8_t { state, work };
@@ -53,7 +53,7 @@ constexpr int component_count(Shape shape, int dimension) {
         case Shape::scalar:
             return 1;
         case Shape::vector:
-        case Shape::position:
+        case Shape::point:
             return dimension;
         case Shape::symmetric_tensor:
             return dimension * (dimension + 1) / 2;
@@ -96,8 +96,7 @@ using enum Reach;
 
 inline constexpr Field<std::uint64_t> id{
     "id", "1", scalar, state, owner, "identity of the particle, unique in its set, never reused"};
-inline constexpr Field<double> position{"position", "m",  Shape::position,
-                                        state,      halo, "position of the centre"};
+inline constexpr Field<double> position{"position", "m", Shape::point, state, halo, "position of the centre"};
 inline constexpr Field<double> velocity{"velocity", "m s-1", vector, state, owner, "velocity"};
 inline constexpr Field<double> mass{"mass", "kg", scalar, state, halo, "mass"};
 inline constexpr Field<double> density{"density", "kg m-3", scalar, state, owner, "mass density"};

@@ -1,0 +1,66 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "comm/halo.hpp"
+#include "domain/cell_table.hpp"
+#include "domain/particles.hpp"
+#include "domain/partition.hpp"
+
+namespace talus {
+
+/// Spreads one particle set over the ranks: who owns what, who needs copies of what, and in which order
+/// particles are stored. arrange() brings all of it up to date with the particles' positions.
+class Decomposition {
+  public:
+    Decomposition(const Communicator& comm, PartitionMethod method);
+
+    /// Collective. Moves every particle to its owner, stores own particles in (cell, id) order, plans the
+    /// halo and lists the cells. Afterwards the copies' fields are not yet filled: refresh them through
+    /// halo(). Throws AgreedError (exit code 1) naming the id if a particle got lost.
+    void arrange(ParticleSet& particles, const CellGrid& grid);
+
+    /// Collective. Cuts the blocks anew, weighted by `work` of each own cell in order (any unit), if that
+    /// lowers the imbalance enough to pay or if `force`. True if ownership changed; arrange() must follow.
+    bool rebalance(std::span<const CellEntry> own_cells, std::span<const double> work, bool force);
+
+    /// Collective. The number of particles over all ranks, fixed from now on: arrange() checks it.
+    void expect(const ParticleSet& particles);
+    std::uint64_t total_particles() const { return expected_.count; }
+
+    const CellTable& table() const { return table_; }
+    /// Own cells in the order of the table.
+    std::span<const CellEntry> own_cells() const { return own_cells_; }
+    Halo& halo() { return halo_; }
+    const Halo& halo() const { return halo_; }
+    /// Imbalance of work (largest over mean) at the last call of rebalance().
+    double measured_imbalance() const { return measured_imbalance_; }
+    int rebalance_count() const { return rebalance_count_; }
+
+  private:
+    struct Ledger {
+        std::uint64_t count = 0, id_sum = 0;
+    };
+    Ledger count_particles(const ParticleSet& particles) const;
+    void migrate(ParticleSet& particles, const CellGrid& grid);
+    void sort(ParticleSet& particles);
+    void list_own_cells();
+
+    const Communicator& comm_;
+    PartitionMethod method_;
+    SparseExchange exchange_;
+    Partition partition_{2};
+    Halo halo_;
+    CellTable table_;
+    std::vector<CellEntry> own_cells_;
+    std::vector<CellKey> keys_;          ///< cell of each own particle at the last sort
+    std::vector<std::uint32_t> stayed_;  ///< particles still in their cell, in order
+    std::vector<std::uint32_t> moved_;   ///< particles that changed cell or arrived
+    double grid_cell_size_ = 0;          ///< keys_ are of a grid with these cells
+    Ledger expected_;
+    double measured_imbalance_ = 1;
+    int rebalance_count_ = 0;
+};
+
+}  // namespace talus

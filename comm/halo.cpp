@@ -1,0 +1,203 @@
+#include "comm/halo.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <unordered_map>
+
+#include "domain/boundary.hpp"
+
+namespace talus {
+
+namespace {
+
+struct CellHeader {  // what the plan sends of a cell
+    CellKey key;
+    std::uint64_t count;
+};
+
+/// Ranks that own cells within reach of `cell` (which may lie beyond the box).
+void owners_within_reach(const CellGrid& grid, const Partition& partition, const Cell& cell,
+                         std::unordered_map<std::uint64_t, int>& owner_cache, std::vector<int>& owners) {
+    owners.clear();
+    Cell lowest{}, highest{};
+    for (int axis = 0; axis < grid.box().dimension; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        lowest[a] = cell[a] - grid.reach();
+        highest[a] = cell[a] + grid.reach();
+        if (grid.cell_count(axis) > 0) {
+            lowest[a] = std::clamp(lowest[a], 0, grid.cell_count(axis) - 1);
+            highest[a] = std::clamp(highest[a], 0, grid.cell_count(axis) - 1);
+        }
+        lowest[a] >>= partition.block_shift();
+        highest[a] >>= partition.block_shift();
+    }
+    for (int z = lowest[2]; z <= highest[2]; ++z)
+        for (int y = lowest[1]; y <= highest[1]; ++y)
+            for (int x = lowest[0]; x <= highest[0]; ++x) {
+                const std::uint64_t key = block_key_of({x, y, z}, 0);
+                auto [at, is_new] = owner_cache.try_emplace(key, 0);
+                if (is_new) at->second = partition.owner_of_block(key);
+                if (std::find(owners.begin(), owners.end(), at->second) == owners.end())
+                    owners.push_back(at->second);
+            }
+}
+
+}  // namespace
+
+void Halo::choose_cells(const CellGrid& grid, const Partition& partition, std::span<const CellEntry> own) {
+    outgoing_.clear();
+    std::map<int, std::size_t> outgoing_of_rank;
+    std::unordered_map<std::uint64_t, int> owner_cache;
+    std::vector<int> owners;
+    const auto send = [&](int rank, const CellEntry& entry, const Image& image) {
+        const auto [at, is_new] = outgoing_of_rank.try_emplace(rank, outgoing_.size());
+        if (is_new) outgoing_.push_back({rank, {}, {}});
+        outgoing_[at->second].cells.push_back({entry.begin, entry.end, image});
+    };
+    for (const CellEntry& entry : own) {
+        const Cell cell = cell_of(entry.key);
+        if (comm_.size() > 1) {
+            owners_within_reach(grid, partition, cell, owner_cache, owners);
+            for (const int rank : owners)
+                if (rank != comm_.rank()) send(rank, entry, Image{cell, {}, {}});
+        }
+        if (!grid.has_copies(cell)) continue;
+        const std::vector<Image> images = grid.images(cell);
+        for (std::size_t k = 1; k < images.size(); ++k) {
+            owners_within_reach(grid, partition, images[k].cell, owner_cache, owners);
+            for (const int rank : owners) send(rank, entry, images[k]);
+        }
+    }
+}
+
+std::vector<CellEntry> Halo::plan(const CellGrid& grid, const Partition& partition,
+                                  std::span<const CellEntry> own, ParticleSet& particles) {
+    choose_cells(grid, partition, own);
+    std::vector<Parcel> parcels;
+    for (const Outgoing& outgoing : outgoing_) {
+        Parcel parcel{outgoing.rank, std::vector<std::byte>(outgoing.cells.size() * sizeof(CellHeader))};
+        auto* header = reinterpret_cast<CellHeader*>(parcel.bytes.data());
+        for (const SentCell& cell : outgoing.cells)
+            *header++ = {key_of(cell.image.cell), cell.end - cell.begin};
+        if (outgoing.rank != comm_.rank()) {
+            ++messages_sent_;
+            bytes_sent_ += parcel.bytes.size();
+        }
+        parcels.push_back(std::move(parcel));
+    }
+    return place_copies(exchange_(std::move(parcels)), particles);
+}
+
+std::vector<CellEntry> Halo::place_copies(const std::vector<Parcel>& parcels, ParticleSet& particles) {
+    struct Arrival {
+        CellHeader header;
+        std::size_t source, order;
+    };
+    incoming_.clear();
+    std::vector<Arrival> arrivals;
+    for (const Parcel& parcel : parcels) {
+        const std::size_t cells = parcel.bytes.size() / sizeof(CellHeader);
+        const auto* header = reinterpret_cast<const CellHeader*>(parcel.bytes.data());
+        for (std::size_t k = 0; k < cells; ++k) arrivals.push_back({header[k], incoming_.size(), k});
+        incoming_.push_back({parcel.rank, std::vector<Run>(cells), 0, {}});
+    }
+    std::sort(arrivals.begin(), arrivals.end(),
+              [](const Arrival& a, const Arrival& b) { return a.header.key < b.header.key; });
+    std::vector<CellEntry> copies;
+    copies.reserve(arrivals.size());
+    auto next = static_cast<std::uint32_t>(particles.size());
+    for (const Arrival& arrival : arrivals) {
+        const std::uint32_t end = next + static_cast<std::uint32_t>(arrival.header.count);
+        incoming_[arrival.source].slots[arrival.order] = {next, end};
+        incoming_[arrival.source].count += arrival.header.count;
+        copies.push_back({arrival.header.key, next, end, true, false});
+        next = end;
+    }
+    particles.set_halo_size(next - particles.size());
+    return copies;
+}
+
+void Halo::pack(Outgoing& outgoing) const {
+    std::size_t count = 0;
+    for (const SentCell& cell : outgoing.cells) count += cell.end - cell.begin;
+    std::size_t bytes = 0;
+    for (const FieldInfo* info : fields_)
+        bytes += particles_->column(*info).components.size() * size_of(info->type) * count;
+    outgoing.buffer.resize(bytes);
+    std::byte* to = outgoing.buffer.data();
+    for (const FieldInfo* info : fields_) {
+        const Column& column = particles_->column(*info);
+        for (std::size_t c = 0; c < column.components.size(); ++c) {
+            const std::byte* from = column.components[c].data();
+            for (const SentCell& cell : outgoing.cells) {
+                const std::size_t size = column.value_size(), n = cell.end - cell.begin;
+                std::memcpy(to, from + cell.begin * size, n * size);
+                if (!cell.image.is_original() && info->type == ValueType::f64) {
+                    auto* values = reinterpret_cast<double*>(to);
+                    if (mirror_sign(info->shape, static_cast<int>(c), particles_->dimension(),
+                                    cell.image.flip) < 0)
+                        for (std::size_t k = 0; k < n; ++k) values[k] = -values[k];
+                    if (info->shape == Shape::point)
+                        for (std::size_t k = 0; k < n; ++k) values[k] += cell.image.shift[c];
+                }
+                to += n * size;
+            }
+        }
+    }
+}
+
+void Halo::unpack(const Incoming& incoming) const {
+    const std::byte* from = incoming.buffer.data();
+    for (const FieldInfo* info : fields_) {
+        Column& column = particles_->column(*info);
+        for (auto& component : column.components)
+            for (const Run& slot : incoming.slots) {
+                const std::size_t bytes = (slot.end - slot.begin) * column.value_size();
+                std::memcpy(component.data() + slot.begin * column.value_size(), from, bytes);
+                from += bytes;
+            }
+    }
+}
+
+void Halo::begin(ParticleSet& particles, std::initializer_list<const FieldInfo*> fields) {
+    constexpr int tag = 10;
+    particles_ = &particles;
+    fields_.clear();
+    for (const FieldInfo* info : fields)
+        if (particles.has(*info)) fields_.push_back(info);
+    requests_.clear();
+    std::size_t particle_bytes = 0;
+    for (const FieldInfo* info : fields_)
+        particle_bytes += particles.column(*info).components.size() * size_of(info->type);
+    for (Incoming& incoming : incoming_) {
+        incoming.buffer.resize(incoming.count * particle_bytes);
+        if (incoming.rank == comm_.rank()) continue;
+        MPI_Request request;
+        MPI_Irecv(incoming.buffer.data(), static_cast<int>(incoming.buffer.size()), MPI_BYTE, incoming.rank,
+                  tag, comm_.handle(), &request);
+        requests_.push_back(request);
+    }
+    for (Outgoing& outgoing : outgoing_) {
+        pack(outgoing);
+        if (outgoing.rank == comm_.rank()) continue;
+        MPI_Request request;
+        MPI_Isend(outgoing.buffer.data(), static_cast<int>(outgoing.buffer.size()), MPI_BYTE, outgoing.rank,
+                  tag, comm_.handle(), &request);
+        requests_.push_back(request);
+        ++messages_sent_;
+        bytes_sent_ += outgoing.buffer.size();
+    }
+}
+
+void Halo::finish() {
+    MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+    for (Incoming& incoming : incoming_) {
+        if (incoming.rank == comm_.rank())
+            for (Outgoing& outgoing : outgoing_)
+                if (outgoing.rank == comm_.rank()) std::swap(incoming.buffer, outgoing.buffer);
+        unpack(incoming);
+    }
+}
+
+}  // namespace talus

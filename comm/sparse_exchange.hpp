@@ -1,0 +1,30 @@
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "comm/communicator.hpp"
+
+namespace talus {
+
+/// Bytes for, or from, one rank.
+struct Parcel {
+    int rank;
+    std::vector<std::byte> bytes;
+};
+
+/// Exchange in which receivers do not know who will send: a rank posts one message to each destination and
+/// learns of the end by a non-blocking barrier, so the number of messages does not grow with the number of
+/// ranks. T. Hoefler, C. Siebert, A. Lumsdaine, PPoPP 2010 ("NBX").
+class SparseExchange {
+  public:
+    explicit SparseExchange(const Communicator& comm) : comm_(comm) {}
+
+    /// Collective. Parcels to the own rank are handed back without MPI. The result is sorted by rank.
+    std::vector<Parcel> operator()(std::vector<Parcel> outgoing);
+
+  private:
+    const Communicator& comm_;
+    int round_ = 0;  ///< consecutive rounds use different tags: a fast rank may already be in the next one
+};
+
+}  // namespace talus

@@ -1,0 +1,70 @@
+#include "domain/boundary.hpp"
+
+#include <cmath>
+
+namespace talus {
+
+double mirror_sign(Shape shape, int component, int dimension, const std::array<bool, 3>& flip) {
+    const auto sign = [&flip](int axis) { return flip[static_cast<std::size_t>(axis)] ? -1.0 : 1.0; };
+    switch (shape) {
+        case Shape::scalar:
+            return 1;
+        case Shape::vector:
+        case Shape::point:
+            return sign(component);
+        case Shape::symmetric_tensor: {
+            const AxisPair axes = symmetric_axes(component, dimension);
+            return sign(axes.first) * sign(axes.second);
+        }
+        case Shape::tensor:
+            return sign(component / dimension) * sign(component % dimension);
+    }
+    return 1;
+}
+
+namespace {
+
+void mirror_state(ParticleSet& particles, std::size_t i, int axis) {
+    std::array<bool, 3> flip{};
+    flip[static_cast<std::size_t>(axis)] = true;
+    for (Column& column : particles.columns()) {
+        const FieldInfo& info = *column.info;
+        if (info.role != Role::state || info.shape == Shape::scalar || info.shape == Shape::point) continue;
+        for (std::size_t c = 0; c < column.components.size(); ++c)
+            if (mirror_sign(info.shape, static_cast<int>(c), particles.dimension(), flip) < 0) {
+                double& value = reinterpret_cast<double*>(column.components[c].data())[i];
+                value = -value;
+            }
+    }
+}
+
+void wrap_axis(std::span<double> x, double lower, double upper) {
+    const double length = upper - lower;
+    for (double& coordinate : x) {
+        if (coordinate >= lower && coordinate < upper) continue;
+        coordinate -= length * std::floor((coordinate - lower) / length);
+        if (coordinate >= upper) coordinate = lower;  // rounding put it on the edge
+        if (coordinate < lower) coordinate = lower;
+    }
+}
+
+}  // namespace
+
+void apply_boundaries(ParticleSet& particles, const Box& box) {
+    for (int axis = 0; axis < box.dimension; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        std::span<double> x = particles.own(field::position, axis);
+        if (box.boundary[a] == Boundary::periodic) {
+            wrap_axis(x, box.lower[a], box.upper[a]);
+        } else if (box.boundary[a] == Boundary::reflecting) {
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double wall = x[i] < box.lower[a] ? box.lower[a] : box.upper[a];
+                if (x[i] >= box.lower[a] && !(x[i] > box.upper[a])) continue;
+                x[i] = 2 * wall - x[i];
+                mirror_state(particles, i, axis);
+            }
+        }
+    }
+}
+
+}  // namespace talus

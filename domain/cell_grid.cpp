@@ -1,0 +1,94 @@
+#include "domain/cell_grid.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace talus {
+
+bool Image::is_original() const { return shift == std::array<double, 3>{} && flip == std::array<bool, 3>{}; }
+
+CellGrid::CellGrid(const Box& box, double radius, int reach) : box_(box), reach_(reach) {
+    if (!(radius > 0) || !std::isfinite(radius))
+        throw std::invalid_argument(
+            fmt::format("interaction radius {} m (must be positive and finite)", radius));
+    covered_radius_ = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < box.dimension; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        size_[a] = radius / reach;
+        if (box.boundary[a] != Boundary::open) {
+            if (box.length(axis) < radius)
+                throw std::invalid_argument(
+                    fmt::format("box is {} m long along {}, shorter than the interaction radius {} m",
+                                box.length(axis), "xyz"[axis], radius));
+            origin_[a] = box.lower[a];
+            count_[a] = std::min(static_cast<int>(box.length(axis) / size_[a]), cell_limit);
+            size_[a] = box.length(axis) / count_[a];
+        }
+        inverse_size_[a] = 1 / size_[a];
+        covered_radius_ = std::min(covered_radius_, size_[a] * reach);
+    }
+}
+
+namespace {
+struct AxisImage {
+    int index;
+    double shift;
+    bool flip;
+};
+
+std::vector<AxisImage> axis_images(const CellGrid& grid, int axis, int index) {
+    const auto a = static_cast<std::size_t>(axis);
+    std::vector<AxisImage> images{{index, 0, false}};
+    const int count = grid.cell_count(axis), reach = grid.reach();
+    const Box& box = grid.box();
+    if (box.boundary[a] == Boundary::periodic) {
+        for (int turn = 1; index - turn * count >= -reach; ++turn)
+            images.push_back({index - turn * count, -turn * box.length(axis), false});
+        for (int turn = 1; index + turn * count < count + reach; ++turn)
+            images.push_back({index + turn * count, turn * box.length(axis), false});
+    } else if (box.boundary[a] == Boundary::reflecting) {
+        if (index < reach) images.push_back({-1 - index, 2 * box.lower[a], true});
+        if (count - 1 - index < reach) images.push_back({2 * count - 1 - index, 2 * box.upper[a], true});
+    }
+    return images;
+}
+}  // namespace
+
+std::vector<Image> CellGrid::images(const Cell& cell) const {
+    std::vector<Image> result{Image{cell, {}, {}}};
+    for (int axis = 0; axis < box_.dimension; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        const auto along = axis_images(*this, axis, cell[a]);
+        const std::size_t before = result.size();
+        for (std::size_t k = 1; k < along.size(); ++k)
+            for (std::size_t b = 0; b < before; ++b) {
+                Image image = result[b];
+                image.cell[a] = along[k].index;
+                image.shift[a] = along[k].shift;
+                image.flip[a] = along[k].flip;
+                result.push_back(image);
+            }
+    }
+    return result;
+}
+
+bool CellGrid::has_copies(const Cell& cell) const {
+    for (int axis = 0; axis < box_.dimension; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        if (box_.boundary[a] == Boundary::open) continue;
+        if (cell[a] < reach_ || cell[a] >= count_[a] - reach_) return true;
+    }
+    return false;
+}
+
+double CellGrid::ladder_radius(double radius) {
+    const double rung = std::ceil(8 * std::log2(radius));
+    const double above = std::exp2(rung / 8);
+    return above < radius ? std::exp2((rung + 1) / 8) : above;
+}
+
+}  // namespace talus
