@@ -154,7 +154,8 @@ void Decomposition::divide(const ParticleSet& particles, const CellGrid& grid) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
         Cell cell{};
         for (int axis = 0; axis < particles.dimension(); ++axis)
-            cell[static_cast<std::size_t>(axis)] = grid.index_along(axis, particles.data(field::position, axis)[i]);
+            cell[static_cast<std::size_t>(axis)] =
+                grid.index_along(axis, particles.data(field::position, axis)[i]);
         mine[block_key_of(cell, partition_.block_shift())] += 1;
     }
     deal(mine, -1);
@@ -183,7 +184,8 @@ bool Decomposition::deal(const BlockWork& mine, double least_gain) {
     std::vector<Block> my_blocks;
     for (const auto& [key, work] : mine) my_blocks.push_back({key, work});
     BlockWork merged;
-    for (const Block& block : comm_.all_gather(std::span<const Block>(my_blocks))) merged[block.key] += block.work;
+    for (const Block& block : comm_.all_gather(std::span<const Block>(my_blocks)))
+        merged[block.key] += block.work;
     std::vector<Block> blocks;
     std::vector<int> previous;
     for (const auto& [key, work] : merged) {
@@ -191,7 +193,8 @@ bool Decomposition::deal(const BlockWork& mine, double least_gain) {
         previous.push_back(partition_.block_count() > 0 ? partition_.owner_of_block(key) : -1);
     }
     std::vector<int> owners = deal_blocks(method_, blocks, comm_.size(), previous);
-    if (least_gain >= 0 && imbalance(blocks, owners, comm_.size()) > measured_imbalance_ - least_gain) return false;
+    if (least_gain >= 0 && imbalance(blocks, owners, comm_.size()) > measured_imbalance_ - least_gain)
+        return false;
     partition_ = Partition(partition_.block_shift(), blocks, std::move(owners));
     ++rebalance_count_;
     return true;

@@ -82,7 +82,8 @@ void Simulation::arrange() {
 
 void Simulation::rebalance() {
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
-    if (work_measured_ && interval > 0 && step_ % interval == 0) decomposition_.rebalance(pass_count_.work_of_cell);
+    if (work_measured_ && interval > 0 && step_ % interval == 0)
+        decomposition_.rebalance(pass_count_.work_of_cell);
 }
 
 void Simulation::start() {
@@ -173,6 +174,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
             {&field::position, &field::mass, &field::smoothing_length, &field::predicted_velocity,
              &field::predicted_density, &field::pressure, &field::sound_speed, &field::predicted_stress},
             [&](Cells cells) { sph::standard_pass(particles_, table, cells, settings, pass_count_); });
+    hold_bodies();
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
 }
@@ -214,6 +216,19 @@ void Simulation::material_response(double damage_time) {
     if (!cracks) return;
     for (std::size_t i = 0; i < particles_.size(); ++i)
         if (pressure[i] < 0) pressure[i] *= 1 - damage[i];
+}
+
+void Simulation::hold_bodies() {
+    if (std::find(setup_.held.begin(), setup_.held.end(), true) == setup_.held.end()) return;
+    const std::uint8_t* body = particles_.data(field::body);
+    for (int axis = 0; axis < particles_.dimension(); ++axis) {
+        double *a = particles_.data(field::acceleration, axis), *v = particles_.data(field::velocity, axis);
+        for (std::size_t i = 0; i < particles_.size(); ++i)
+            if (setup_.held[body[i]]) a[i] = v[i] = 0;
+    }
+    double* power = particles_.data(field::specific_power);
+    for (std::size_t i = 0; i < particles_.size(); ++i)
+        if (setup_.held[body[i]]) power[i] = 0;
 }
 
 void Simulation::choose_time_step() {

@@ -23,6 +23,7 @@ struct Setup {
     Box box;
     sph::Settings sph;
     std::vector<Material> materials;  ///< one a body, in order
+    std::vector<bool> held;           ///< one a body: its particles never move; empty: none
     PartitionMethod partition = PartitionMethod::metis;
     double largest_damage_step = 0.1;  ///< damage may grow by this much a step [1]
     double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
@@ -80,6 +81,7 @@ class Simulation {
     void rebalance();
     void evaluate(double time_ahead, double damage_time);
     void material_response(double damage_time);
+    void hold_bodies();
     void choose_time_step();
     void check_finite();
 

@@ -1,0 +1,67 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "comm/communicator.hpp"
+#include "domain/particles.hpp"
+#include "physics/solid/material.hpp"
+#include "physics/sph/settings.hpp"
+#include "src/setup/shapes.hpp"
+
+namespace talus {
+
+/// Added to the uniform velocity of a body at the start.
+struct SineVelocity {
+    Point amplitude;    ///< [m/s]
+    Point wave_vector;  ///< [1/m]
+    double phase;       ///< [rad]: v = amplitude sin(wave_vector . x + phase)
+};
+/// First bending mode of a thin cantilever, clamped at clamp, free at clamp + length along x, deflected along
+/// y: v_y = tip_velocity f(x)/f(length). L. D. Landau, E. M. Lifshitz, Theory of Elasticity, section 25,
+/// problem 5.
+struct CantileverVelocity {
+    double clamp, length;  ///< [m]
+    double tip_velocity;   ///< [m/s]
+};
+/// v = rate (x - centre): uniform expansion, or along one axis only.
+struct StretchVelocity {
+    Point centre;  ///< [m]
+    Point rate;    ///< [1/s] along each axis
+};
+/// Convergence on a centre, v = -speed (radius / r)^(D-1) along r; with radius = 0 the same speed everywhere.
+struct RadialVelocity {
+    Point centre;   ///< [m]
+    double speed;   ///< inward [m/s]
+    double radius;  ///< where it has that speed [m]
+};
+using VelocityField =
+    std::variant<std::monostate, SineVelocity, CantileverVelocity, StretchVelocity, RadialVelocity>;
+
+/// A body of a scene, before it is made of particles.
+struct Body {
+    std::string name;
+    BodyShape shape;
+    Lattice lattice = Lattice::cubic;
+    double spacing = 0;  ///< D-th root of the volume per particle [m]
+    double jitter = 0;   ///< random displacement, largest, in spacings [1]
+    Point velocity{};    ///< [m/s]
+    Point spin{};        ///< angular velocity around the shape's centre [rad/s]; in 2D its z component
+    VelocityField velocity_field;
+    double density = 0;          ///< [kg/m3]
+    double internal_energy = 0;  ///< [J/kg]
+    double damage = 0;           ///< [1]
+};
+
+/// Makes the particles of all bodies, each rank its share, with the state at time 0. Ids are given in order
+/// of bodies and lattice points, so that they, and the flaws drawn by them, depend on the scene alone.
+/// Collective.
+ParticleSet make_particles(const Communicator& comm, const std::vector<Body>& bodies,
+                           const std::vector<Material>& materials, const ParticleSet& prototype,
+                           const sph::Settings& settings, std::uint64_t seed);
+
+/// Number of particles that a body becomes.
+std::uint64_t count_particles(const Body& body, int dimension);
+
+}  // namespace talus

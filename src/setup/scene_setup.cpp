@@ -1,0 +1,192 @@
+#include "src/setup/scene_setup.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "src/setup/body_reader.hpp"
+#include "src/setup/material_reader.hpp"
+
+namespace talus {
+
+namespace {
+
+constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
+constexpr Range not_negative{0};
+
+Box read_box(const Section& table, int dimension) {
+    Box box;
+    box.dimension = dimension;
+    const auto count = static_cast<std::size_t>(dimension);
+    const std::vector<std::string> kinds =
+        table.texts("boundaries", count, std::vector<std::string>(count, "open"));
+    bool closed = false;
+    for (std::size_t a = 0; a < std::min(count, kinds.size()); ++a) {
+        if (kinds[a] == "periodic")
+            box.boundary[a] = Boundary::periodic;
+        else if (kinds[a] == "reflecting")
+            box.boundary[a] = Boundary::reflecting;
+        else if (kinds[a] != "open")
+            table.error(
+                "boundaries",
+                fmt::format("'{}' is not a boundary (allowed: open, periodic, reflecting)", kinds[a]));
+        closed |= box.boundary[a] != Boundary::open;
+    }
+    if (!closed && !table.has("lower") && !table.has("upper")) return box;
+    const std::vector<double> lower = table.numbers("lower", "m", count),
+                              upper = table.numbers("upper", "m", count);
+    for (std::size_t a = 0; a < count && a < lower.size() && a < upper.size(); ++a) {
+        box.lower[a] = lower[a];
+        box.upper[a] = upper[a];
+        if (!(lower[a] < upper[a])) {
+            table.error("upper", fmt::format("must be above lower along {}", "xyz"[a]));
+            box.upper[a] = lower[a] + 1;
+        }
+    }
+    return box;
+}
+
+sph::KernelKind kernel_named(const std::string& name) {
+    if (name == "cubic_spline") return sph::KernelKind::cubic_spline;
+    if (name == "wendland_c2") return sph::KernelKind::wendland_c2;
+    if (name == "wendland_c4") return sph::KernelKind::wendland_c4;
+    if (name == "wendland_c6") return sph::KernelKind::wendland_c6;
+    return sph::KernelKind::gaussian;
+}
+
+void read_interpolation(const Section& table, int dimension, sph::Settings& settings) {
+    const std::string name =
+        table.choice("interpolation", {"automatic", "linear", "cubic", "quintic"}, "automatic");
+    settings.compressed = sph::stable_compressed(dimension);
+    settings.stretched = sph::stable_stretched(dimension);
+    if (name == "linear") settings.compressed = settings.stretched = sph::Interpolation::linear;
+    if (name == "cubic") settings.compressed = settings.stretched = sph::Interpolation::cubic;
+    if (name == "quintic") settings.compressed = settings.stretched = sph::Interpolation::quintic;
+}
+
+/// `materials`: those of the bodies, which decide some defaults.
+sph::Settings read_sph(const Section& table, int dimension, const std::vector<Material>& materials) {
+    sph::Settings settings;
+    bool all_gas = !materials.empty(), any_strength = false;
+    double shock_slope = 1;
+    for (const Material& material : materials) {
+        const auto* gas = std::get_if<IdealGas>(&material.eos);
+        all_gas &= gas != nullptr;
+        any_strength |= material.shear_modulus > 0;
+        if (gas) shock_slope = std::max(shock_slope, 0.5 * (gas->gamma + 1));
+    }
+    const bool godunov = table.choice("formulation", {"godunov", "standard"}, "godunov") == "godunov";
+    settings.formulation = godunov ? sph::Formulation::godunov : sph::Formulation::standard;
+    if (godunov) {
+        settings.kernel = kernel_named(table.choice("kernel", {"gaussian"}, "gaussian"));
+        read_interpolation(table, dimension, settings);
+        settings.riemann = table.flag("riemann", true);
+        settings.second_order = table.integer("order", 2, 1, 2) == 2;
+        settings.riemann_velocity = table.flag("riemann_velocity", all_gas);
+        settings.shock_slope = table.number("shock_slope", "1", shock_slope, positive);
+    } else {
+        settings.kernel = kernel_named(
+            table.choice("kernel", {"gaussian", "cubic_spline", "wendland_c2", "wendland_c4", "wendland_c6"},
+                         "wendland_c2"));
+        settings.viscosity_alpha = table.number("viscosity_alpha", "1", 1.0, not_negative);
+        settings.viscosity_beta = table.number("viscosity_beta", "1", 2.0, not_negative);
+    }
+    if (settings.kernel == sph::KernelKind::gaussian)
+        settings.cutoff = table.number("cutoff", "1", 2.0, {1, 3.1});
+    const std::string density = all_gas ? "summation" : "continuity";
+    settings.density = table.choice("density", {"continuity", "summation"}, density) == "summation"
+                           ? sph::DensityMethod::summation
+                           : sph::DensityMethod::continuity;
+    if (settings.density == sph::DensityMethod::summation && any_strength)
+        table.error("density", "a solid with strength needs density = \"continuity\"");
+    settings.variable_smoothing_length = table.choice("smoothing_length", {"constant", "variable"},
+                                                      all_gas ? "variable" : "constant") == "variable";
+    settings.eta = table.number("eta", "1", godunov ? 1.0 : 1.3, {0.5, 5});
+    if (settings.variable_smoothing_length) {
+        settings.smoothing_widening = table.number("smoothing_widening", "1", 1.0, {1, 5});
+        if (table.has("largest_smoothing_length"))
+            settings.largest_smoothing_length = table.number("largest_smoothing_length", "m", {}, positive);
+    }
+    settings.courant = table.number("courant", "1", godunov ? 0.5 : 0.3, {0, 2, true});
+    return settings;
+}
+
+PartitionMethod read_partition(const Section& table) {
+    const std::string name =
+        table.choice("decomposition", {"metis", "bisection", "slabs", "scrambled"}, "metis");
+    if (name == "bisection") return PartitionMethod::bisection;
+    if (name == "slabs") return PartitionMethod::slabs;
+    if (name == "scrambled") return PartitionMethod::scrambled;
+    return PartitionMethod::metis;
+}
+
+void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup) {
+    const Section root = scene.root();
+    const Box& box = setup.simulation.box;
+    const std::vector<Section> tables = root.sections("body");
+    if (tables.empty()) root.error("body", "a scene needs at least one [[body]]");
+    if (tables.size() > 255) root.error("body", "more than 255 bodies");
+    for (const Section& table : tables) {
+        setup.simulation.materials.push_back(find_material(comm, scene, table));
+        const Material& material = setup.simulation.materials.back();
+        setup.bodies.push_back(read_body(table, material, box.dimension, BoxShape{box.lower, box.upper}));
+        setup.simulation.held.push_back(table.flag("held", false));
+        for (int axis = 0; axis < box.dimension; ++axis) {
+            const auto a = static_cast<std::size_t>(axis);
+            const BoxShape around = bounds(setup.bodies.back().shape, box.dimension);
+            if (box.boundary[a] != Boundary::open &&
+                (around.lower[a] < box.lower[a] || around.upper[a] > box.upper[a]))
+                table.error("shape",
+                            fmt::format("reaches out of the box along {}, where it is closed", "xyz"[a]));
+        }
+    }
+}
+
+/// Solids in contact bear neither tension nor shear across it, unless they are said to be bonded.
+void read_contacts(const Section& root, SceneSetup& setup) {
+    bool solid = false;
+    for (const Material& material : setup.simulation.materials) solid |= material.shear_modulus > 0;
+    if (!solid || setup.bodies.size() < 2) return;
+    setup.simulation.sph.several_bodies =
+        root.section("sph").choice("contacts", {"frictionless", "bonded"}, "frictionless") == "frictionless";
+}
+
+}  // namespace
+
+SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
+    const Section root = scene.root();
+    SceneSetup setup;
+    setup.title = root.text("title", scene.file().stem().string());
+    setup.seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
+    const int dimension = static_cast<int>(root.integer("dimension", 3, 1, 3));
+    setup.simulation.box = read_box(root.section("box"), dimension);
+    read_bodies(comm, scene, setup);
+    setup.simulation.sph = read_sph(root.section("sph"), dimension, setup.simulation.materials);
+    read_contacts(root, setup);
+    const Section run = root.section("run");
+    setup.output.end_time = run.number("end_time", "s", {}, positive);
+    setup.simulation.first_time_step = run.has("first_time_step")
+                                           ? run.number("first_time_step", "s", {}, positive)
+                                           : std::numeric_limits<double>::infinity();
+    setup.simulation.partition = read_partition(run);
+    setup.simulation.rebalance_interval = static_cast<int>(run.integer("rebalance_interval", 10, 0, 1000000));
+    const Section output = root.section("output");
+    setup.output.snapshot_interval = output.number("snapshots", "s", 0.0, not_negative);
+    setup.output.diagnostics_interval = output.number("diagnostics", "s", 0.0, not_negative);
+    setup.output.checkpoint_interval = output.number("checkpoints", "s", 1800.0, not_negative);
+    scene.finish();
+    return setup;
+}
+
+ParticleSet empty_particles(const SceneSetup& setup) {
+    ParticleSet particles("sph", setup.simulation.box.dimension);
+    add_fields(particles, setup.simulation);
+    return particles;
+}
+
+ParticleSet make_particles(const Communicator& comm, const SceneSetup& setup) {
+    return make_particles(comm, setup.bodies, setup.simulation.materials, empty_particles(setup),
+                          setup.simulation.sph, setup.seed);
+}
+
+}  // namespace talus

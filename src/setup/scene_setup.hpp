@@ -1,0 +1,39 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "comm/communicator.hpp"
+#include "io/scene.hpp"
+#include "src/setup/bodies.hpp"
+#include "src/simulation.hpp"
+
+namespace talus {
+
+/// What a run writes and when it ends; the scene's [run] and [output] tables.
+struct OutputPlan {
+    double end_time = 0;              ///< [s]
+    double snapshot_interval = 0;     ///< [s]; 0: only the first and the last state
+    double diagnostics_interval = 0;  ///< [s]; 0: every step
+    double checkpoint_interval = 0;   ///< wall time [s]; 0: only at the end and when asked to stop
+    std::vector<std::string> fields;  ///< extra fields in snapshots
+};
+
+/// A scene, read and checked.
+struct SceneSetup {
+    std::string title;
+    Setup simulation;
+    std::vector<Body> bodies;
+    OutputPlan output;
+    std::uint64_t seed = 0;
+};
+
+/// Reads everything a scene says. Throws SceneError (on every rank) with all faults at once. Collective.
+SceneSetup read_scene(const Communicator& comm, const Scene& scene);
+
+/// An empty set with the fields the scene's models need.
+ParticleSet empty_particles(const SceneSetup& setup);
+
+/// The scene's particles at time 0. Collective.
+ParticleSet make_particles(const Communicator& comm, const SceneSetup& setup);
+
+}  // namespace talus
