@@ -1,0 +1,38 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "comm/communicator.hpp"
+#include "domain/particles.hpp"
+#include "io/agree.hpp"
+#include "io/run_state.hpp"
+
+namespace talus {
+
+/// Writes `directory`/checkpoint_<step>.h5, complete and durable, or throws AgreedError on every rank and
+/// leaves what was there untouched. The particle data are written in order of id, so that their bytes depend
+/// neither on the number of ranks nor on the decomposition. Once the new file has been read back and synced,
+/// all but the newest two checkpoints are removed. Collective.
+void write_checkpoint(const Communicator& comm, const std::filesystem::path& directory, const RunState& state,
+                      const std::vector<const ParticleSet*>& sets);
+
+/// Reads a checkpoint written by any number of ranks into `sets`, whose fields (ParticleSet::add) must be
+/// those of the file. Every rank receives an equal share of the particles in order of id; they must then be
+/// migrated to where they belong. Throws AgreedError (exit code 3) naming the file and its damaged section,
+/// and an older checkpoint if there is one. Collective.
+RunState read_checkpoint(const Communicator& comm, const std::filesystem::path& file,
+                         const std::vector<ParticleSet*>& sets);
+
+/// The run state alone, to build a simulation from its scene before its particles are read. Collective.
+RunState read_checkpoint_state(const Communicator& comm, const std::filesystem::path& file);
+
+/// The checkpoint that `what` means: a file, a folder (the newest in it), or "latest" (the newest in
+/// `output_directory`). Throws AgreedError if there is none. Collective.
+std::filesystem::path find_checkpoint(const Communicator& comm, const std::filesystem::path& what,
+                                      const std::filesystem::path& output_directory);
+
+/// Checkpoints of a folder, newest step first. For one rank.
+std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& directory);
+
+}  // namespace talus

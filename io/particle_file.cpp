@@ -1,0 +1,191 @@
+#include "io/particle_file.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "io/agree.hpp"
+#include "io/durable.hpp"
+#include "io/hashing.hpp"
+
+namespace talus {
+namespace {
+
+using hdf5::check;
+using hdf5::Handle;
+
+/// Independent transfers of 2 GiB and more fail in HDF5 1.10; collective ones are kept well below, too.
+constexpr std::size_t slab_bytes = std::size_t{1} << 30;
+
+struct Written {
+    std::vector<std::uint64_t> hashes;  ///< of this rank's blocks
+    std::uint64_t checksum = 0;         ///< of the dataset, on the root
+    std::uint64_t offset = 0;           ///< of the dataset in the file
+};
+
+/// Lays out the file on one rank: all metadata, and room on disk for the data.
+void create_layout(const ParticleFilePlan& plan, const std::filesystem::path& temporary,
+                   std::vector<Written>& written) {
+    std::uint64_t bytes = std::uint64_t{1} << 20;
+    for (const DatasetPlan& dataset : plan.datasets) bytes += dataset.total * dataset.row_bytes();
+    check_space(temporary.has_parent_path() ? temporary.parent_path() : ".", bytes);
+    Handle file = hdf5::create_file(temporary, plan.format);
+    for (std::size_t k = 0; k < plan.datasets.size(); ++k) {
+        const DatasetPlan& dataset = plan.datasets[k];
+        const auto slash = dataset.path.rfind('/');
+        if (slash != 0 && H5Lexists(file, dataset.path.substr(0, slash).c_str(), H5P_DEFAULT) <= 0)
+            hdf5::create_group(file, dataset.path.substr(0, slash));
+        const Handle made =
+            hdf5::create_dataset(file, dataset.path, dataset.type, dataset.total, dataset.components);
+        hdf5::set_attribute(made, "units", dataset.unit);
+        hdf5::set_attribute(made, "unitSI", 1.0);
+        hdf5::set_attribute(made, "description", dataset.description);
+        hdf5::set_attribute(made, "rows_per_block", rows_per_block);
+        hdf5::set_attribute(made, checksum_attribute, std::uint64_t{0});
+        written[k].offset = hdf5::extent_of(made).offset;
+    }
+    plan.describe(file);
+    file.close("write the layout");
+    reserve_space(temporary);
+}
+
+Handle open_in_parallel(const Communicator& comm, const std::filesystem::path& file) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
+    check(H5Pset_fapl_mpio(access, comm.handle(), MPI_INFO_NULL), "choose parallel access");
+    check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG), "set the close degree");
+    return Handle(H5Fopen(file.c_str(), H5F_ACC_RDWR, access), H5Fclose, "open for parallel writing");
+}
+
+/// Writes rows [range.begin, range.end) of `data` collectively; ranks with nothing to write take part.
+void write_slab(hid_t dataset, const DatasetPlan& plan, RowRange range, const std::byte* data) {
+    const int dimensions = plan.components > 1 ? 2 : 1;
+    const hsize_t start[2] = {range.begin, 0};
+    const hsize_t count[2] = {range.count(), plan.components};
+    const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "make a property list");
+    check(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE), "choose collective writing");
+    const Handle in_file(H5Dget_space(dataset), H5Sclose, "select rows");
+    const Handle in_memory(H5Screate_simple(dimensions, count, nullptr), H5Sclose, "select rows");
+    if (range.count() == 0) {
+        check(H5Sselect_none(in_file), "select rows");
+        check(H5Sselect_none(in_memory), "select rows");
+    } else {
+        check(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, nullptr, count, nullptr), "select rows");
+    }
+    check(H5Dwrite(dataset, hdf5::native_type(plan.type), in_memory, in_file, transfer, data), "write");
+}
+
+void write_dataset(const Communicator& comm, hid_t file, const DatasetPlan& plan, Written& written) {
+    if (plan.total == 0) {
+        written.checksum = combined_hash({});
+        return;
+    }
+    const std::vector<std::byte> bytes = plan.data();
+    std::optional<Handle> dataset;
+    agree_on(comm, [&] {
+        if (bytes.size() != plan.rows.count() * plan.row_bytes())
+            throw std::logic_error("wrong number of rows");
+        dataset.emplace(hdf5::open_dataset(file, plan.path));
+    });
+    const std::uint64_t slab_rows = std::max<std::uint64_t>(1, slab_bytes / plan.row_bytes());
+    const std::uint64_t slabs = comm.all_max((plan.rows.count() + slab_rows - 1) / slab_rows);
+    for (std::uint64_t k = 0; k < slabs; ++k) {
+        const std::uint64_t begin = std::min(plan.rows.begin + k * slab_rows, plan.rows.end);
+        const std::uint64_t end = std::min(begin + slab_rows, plan.rows.end);
+        agree_on(comm, [&] {
+            write_slab(*dataset, plan, {begin, end},
+                       bytes.data() + (begin - plan.rows.begin) * plan.row_bytes());
+        });
+    }
+    written.hashes = block_hashes(bytes, plan.row_bytes());
+    written.checksum = combined_hash(comm.all_gather(std::span<const std::uint64_t>(written.hashes)));
+}
+
+/// Reads back what this rank wrote. Needed: MPI-IO can report success on a full disk.
+void verify(const std::filesystem::path& temporary, const ParticleFilePlan& plan,
+            const std::vector<Written>& written) {
+    const FileReader reader(temporary);
+    std::vector<std::byte> block;
+    for (std::size_t k = 0; k < plan.datasets.size(); ++k) {
+        const DatasetPlan& dataset = plan.datasets[k];
+        std::uint64_t row = dataset.rows.begin;
+        for (const std::uint64_t hash : written[k].hashes) {
+            const std::uint64_t end = std::min(row + rows_per_block, dataset.rows.end);
+            block.resize((end - row) * dataset.row_bytes());
+            reader.read(written[k].offset + row * dataset.row_bytes(), block);
+            if (hash64(block) != hash)
+                throw std::runtime_error(fmt::format("{} does not read back as written", dataset.path));
+            row = end;
+        }
+    }
+}
+
+void write_temporary(const Communicator& comm, const ParticleFilePlan& plan,
+                     const std::filesystem::path& temporary) {
+    std::vector<Written> written(plan.datasets.size());
+    agree_on_root(comm, [&] { create_layout(plan, temporary, written); });
+    for (Written& one : written) one.offset = comm.all_max(one.offset);
+
+    std::optional<Handle> file;
+    agree_on(comm, [&] { file.emplace(open_in_parallel(comm, temporary)); });
+    for (std::size_t k = 0; k < plan.datasets.size(); ++k)
+        write_dataset(comm, *file, plan.datasets[k], written[k]);
+    agree_on(comm, [&] { file->close("close"); });
+
+    agree_on_root(comm, [&] {
+        Handle serial = hdf5::open_file(temporary, true);
+        for (std::size_t k = 0; k < plan.datasets.size(); ++k)
+            hdf5::change_attribute(hdf5::open_dataset(serial, plan.datasets[k].path), checksum_attribute,
+                                   written[k].checksum);
+        serial.close("write the checksums");
+    });
+    agree_on(comm, [&] {
+        sync_file(temporary);
+        verify(temporary, plan, written);
+    });
+}
+
+}  // namespace
+
+void write_particle_file(const Communicator& comm, const ParticleFilePlan& plan) {
+    const std::filesystem::path temporary = temporary_name(plan.file);
+    try {
+        agree_on_root(comm, [&] {
+            if (plan.file.has_parent_path()) std::filesystem::create_directories(plan.file.parent_path());
+        });
+        write_temporary(comm, plan, temporary);
+        agree_on_root(comm, [&] { publish(temporary, plan.file); });
+    } catch (const AgreedError& failure) {
+        std::error_code ignored;
+        if (comm.is_root()) std::filesystem::remove(temporary, ignored);
+        throw AgreedError(failure.exit_code,
+                          fmt::format("{}: not written: {}", plan.file.string(), failure.what()));
+    }
+}
+
+std::vector<std::uint64_t> block_hashes(std::span<const std::byte> rows, std::size_t row_bytes) {
+    std::vector<std::uint64_t> hashes;
+    const std::size_t block = rows_per_block * row_bytes;
+    for (std::size_t at = 0; at < rows.size(); at += block)
+        hashes.push_back(hash64(rows.subspan(at, std::min(block, rows.size() - at))));
+    return hashes;
+}
+
+std::uint64_t combined_hash(std::span<const std::uint64_t> hashes) { return hash64(std::as_bytes(hashes)); }
+
+std::uint64_t visit_blocks(const std::filesystem::path& file, const hdf5::Extent& extent,
+                           const std::function<void(std::span<const std::byte>, std::uint64_t)>& visit) {
+    const FileReader reader(file);
+    std::vector<std::uint64_t> hashes;
+    std::vector<std::byte> block;
+    for (std::uint64_t row = 0; row < extent.rows; row += rows_per_block) {
+        block.resize(std::min(rows_per_block, extent.rows - row) * extent.row_bytes());
+        reader.read(extent.offset + row * extent.row_bytes(), block);
+        hashes.push_back(hash64(block));
+        visit(block, row);
+    }
+    return combined_hash(hashes);
+}
+
+}  // namespace talus

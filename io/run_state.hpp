@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace talus {
+
+/// The state of a run besides its particles. `numbers` holds what else a run needs to go on with the same
+/// bits (sums so far, counters of random streams as doubles); nothing that differs between equal states,
+/// such as wall time, belongs there, since it is hashed.
+struct RunState {
+    double time = 0;             ///< [s]
+    double time_step = 0;        ///< [s]
+    std::uint64_t step = 0;      ///< steps done
+    std::string scene_text;      ///< the scene file, verbatim
+    std::string resolved_scene;  ///< Scene::resolved()
+    std::string version;         ///< of the program; for information only
+    std::map<std::string, double> numbers;
+};
+
+}  // namespace talus
