@@ -37,4 +37,6 @@ void Communicator::all_agree(int exit_code, const std::string& message) const {
     throw AgreedError(exit_code, agreed);
 }
 
+Communicator world() { return Communicator(MPI_COMM_WORLD); }
+
 }  // namespace talus

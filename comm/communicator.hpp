@@ -115,4 +115,7 @@ class Communicator {
     int size_ = 1;
 };
 
+/// All ranks of the program.
+Communicator world();
+
 }  // namespace talus

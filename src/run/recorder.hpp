@@ -1,0 +1,58 @@
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "io/scene.hpp"
+#include "src/setup/scene_setup.hpp"
+#include "src/simulation.hpp"
+
+namespace talus {
+
+/// Everything a run writes: checkpoints, snapshots, diagnostics, the log with progress, and the table of where time went.
+/// Whatever cannot be written ends the run with AgreedError (exit code 3). All methods are collective.
+class Recorder {
+  public:
+    /// Makes the folder. A new run that finds another run's results there moves them to `folder`.1, .2, ...
+    Recorder(const Communicator& comm, std::filesystem::path folder, const Scene& scene, const SceneSetup& setup,
+             bool is_new);
+    ~Recorder();
+
+    const std::filesystem::path& folder() const { return folder_; }
+
+    /// A simulation as its checkpoint left it. `what`: see find_checkpoint().
+    std::unique_ptr<Simulation> restore(const std::string& what);
+    /// Before the first step: describes the run, and for a new one writes its first state.
+    void begin(Simulation& simulation, double end_time);
+    void after_step(Simulation& simulation);
+    /// Writes a checkpoint because of `why`.
+    void stop_early(Simulation& simulation, const std::string& why);
+    /// Writes the last state and prints the table of time per phase.
+    void finish(Simulation& simulation);
+
+    /// Where to go on from after a failure, for messages.
+    std::string last_checkpoint_hint() const;
+    /// Longest wall time of a step so far [s].
+    double longest_step() const { return longest_step_; }
+
+  private:
+    struct Files;
+
+    void write_checkpoint_now(Simulation& simulation);
+    void write_snapshot_now(Simulation& simulation, int index);
+    void write_diagnostics(Simulation& simulation);
+    void print_summary(Simulation& simulation);
+
+    const Communicator& comm_;
+    std::filesystem::path folder_;
+    const Scene& scene_;
+    const SceneSetup& setup_;
+    std::unique_ptr<Files> files_;
+    std::filesystem::path last_checkpoint_;
+    std::chrono::steady_clock::time_point last_checkpoint_time_, step_began_, began_;
+    double time_before_ = 0, longest_step_ = 0, first_energy_ = 0;
+    std::uint64_t first_step_ = 0;
+};
+
+}  // namespace talus
