@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
@@ -57,6 +58,12 @@ Simulation::Simulation(const Communicator& comm, Setup setup, ParticleSet partic
       decomposition_(comm, setup_.partition) {
     for (const Material& material : setup_.materials) shear_moduli_.push_back(material.shear_modulus);
     decomposition_.expect(particles_);
+    const auto h = std::as_const(particles_).own(field::smoothing_length);
+    const auto [least, greatest] = std::minmax_element(h.begin(), h.end());
+    const double infinity = std::numeric_limits<double>::infinity();
+    setup_.sph.uniform_smoothing_length =
+        !setup_.sph.variable_smoothing_length &&
+        comm_.all_min(h.empty() ? infinity : *least) == comm_.all_max(h.empty() ? -infinity : *greatest);
 }
 
 double Simulation::interaction_radius() const {

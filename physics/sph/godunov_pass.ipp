@@ -31,7 +31,7 @@ void run_godunov(ParticleSet& particles, const CellTable& table, Cells which, co
         if (strength) return run(GodunovOptions<true, variable, false, false>{});
         return run(GodunovOptions<false, variable, false, false>{});
     };
-    if (settings.variable_smoothing_length)
+    if (!settings.uniform_smoothing_length)
         with_h(std::true_type{});
     else
         with_h(std::false_type{});

@@ -33,7 +33,7 @@ inline double exp_minus(double x) {
 /// A kernel W(r, h) in D dimensions has a support radius support() * h and gives
 ///   value(r2, inverse_h):  W [1/m^D]
 ///   factor(r2, inverse_h): (1/r) dW/dr [1/m^(D+2)], so that grad_i W_ij = factor * (x_i - x_j).
-/// r2 is the squared distance [m2], inside the support.
+/// r2 is the squared distance [m2]; outside the support both are 0.
 
 /// Gaussian exp(-r^2/h^2), cut at `cutoff` smoothing lengths and lowered by its value there, so that it ends
 /// continuously, and normalised so that its integral, and with it the first moment of its gradient, are
@@ -60,13 +60,14 @@ struct Gaussian {
     double value(double r2, double inverse_h) const {
         double scale = norm * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
-        return scale * (exp_minus(r2 * inverse_h * inverse_h) - edge);
+        return scale * (exp_minus(std::min(r2 * inverse_h * inverse_h, cutoff * cutoff)) - edge);
     }
     double factor(double r2, double inverse_h) const {
         const double inverse_h2 = inverse_h * inverse_h;
         double scale = -2 * norm * inverse_h2 * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
-        return scale * exp_minus(r2 * inverse_h2);
+        const double x = r2 * inverse_h2, end = cutoff * cutoff;
+        return x < end ? scale * exp_minus(std::min(x, end)) : 0.0;
     }
 
     double cutoff, edge, norm;

@@ -17,6 +17,7 @@ struct Settings {
     double cutoff = 2;  ///< of the Gaussian [h]; other kernels end at 2 h
     DensityMethod density = DensityMethod::continuity;
     bool variable_smoothing_length = false;
+    bool uniform_smoothing_length = true;  ///< all particles have the same h (found by the simulation)
     double eta = 1;                       ///< h = eta (m / rho)^(1/D) when it varies
     double smoothing_widening = 1;        ///< C_smooth: the density that sets h is smoothed over C_smooth h
     double largest_smoothing_length = 0;  ///< cap of h [m]; 0: none

@@ -51,8 +51,10 @@ struct CommandLine {
         run_command->add_option("--steps", run.steps, "Stop after this many steps in all");
         run_command->add_option("--until", until, "Stop at this time: seconds, or a number with a unit");
         run_command->add_option("--out", run.out, "Folder for results (default out/<scene>)");
-        run_command->add_option("--restart", run.restart, "Go on from a checkpoint: a file, a folder or 'latest'");
-        run_command->add_option("--walltime", walltime, "Write a checkpoint and stop before this much wall time")
+        run_command->add_option("--restart", run.restart,
+                                "Go on from a checkpoint: a file, a folder or 'latest'");
+        run_command
+            ->add_option("--walltime", walltime, "Write a checkpoint and stop before this much wall time")
             ->type_name("HH:MM:SS");
         info_command = app.add_subcommand("info", "Say what is in a checkpoint or snapshot");
         info_command->add_option("file", file)->required();
@@ -64,8 +66,9 @@ struct CommandLine {
         if (!walltime.empty()) run.walltime = walltime_of(walltime);
         if (!until.empty()) {
             try {
-                run.until = until.find_first_not_of("0123456789.eE+-") == std::string::npos ? std::stod(until)
-                                                                                           : convert_to_si(until, "s");
+                run.until = until.find_first_not_of("0123456789.eE+-") == std::string::npos
+                                ? std::stod(until)
+                                : convert_to_si(until, "s");
             } catch (const std::exception& error) {
                 throw CLI::ValidationError("--until", error.what());
             }

@@ -2,19 +2,20 @@
 #include <filesystem>
 
 #include "comm/communicator.hpp"
+#include "io/scene.hpp"
 #include "src/run/options.hpp"
 
 namespace talus {
 
-/// `talus run`: runs a scene to its end, or until asked to stop. Returns the exit code. Throws SceneError for a bad scene
-/// and AgreedError for everything that goes wrong later. Collective.
+/// `talus run`: runs a scene to its end, or until asked to stop. Returns the exit code. Throws SceneError for
+/// a bad scene and AgreedError for everything that goes wrong later. Collective.
 int run_scene(const Communicator& comm, const RunOptions& options);
 
-/// `talus check`: reads and validates a scene and prints what it resolves to, particle counts, bytes per particle and
-/// per rank, the first time step and the estimated cost. Collective.
+/// `talus check`: reads and validates a scene and prints what it resolves to, particle counts, bytes per
+/// particle and per rank, the first time step and the estimated cost. Collective.
 int check_scene(const Communicator& comm, const RunOptions& options);
 
 /// The scene that the options name, with --quick and --set applied. Collective.
-class Scene load_scene(const Communicator& comm, const RunOptions& options);
+Scene load_scene(const Communicator& comm, const RunOptions& options);
 
 }  // namespace talus

@@ -8,12 +8,11 @@
 
 namespace talus {
 
-/// Exit codes of the program.
+/// Exit codes of the program; exit_input_output = 3 is io's (io/agree.hpp).
 enum ExitCode : int {
     exit_done = 0,
     exit_run_failed = 1,
     exit_bad_scene = 2,
-    exit_input_output = 3,
     exit_stopped_early = 75,
 };
 
@@ -21,11 +20,11 @@ enum ExitCode : int {
 struct RunOptions {
     std::filesystem::path scene;
     bool quick = false;
-    std::optional<std::uint64_t> steps;   ///< stop after this many steps in all
-    std::optional<double> until;          ///< stop at this time [s], in place of the scene's end_time
-    std::filesystem::path out;            ///< empty: out/<name of the scene>
-    std::vector<std::string> overrides;   ///< key=value
-    std::string restart;                  ///< empty: new run
+    std::optional<std::uint64_t> steps;  ///< stop after this many steps in all
+    std::optional<double> until;         ///< stop at this time [s], in place of the scene's end_time
+    std::filesystem::path out;           ///< empty: out/<name of the scene>
+    std::vector<std::string> overrides;  ///< key=value
+    std::string restart;                 ///< empty: new run
     double walltime = std::numeric_limits<double>::infinity();  ///< [s]
 };
 

@@ -10,13 +10,14 @@
 
 namespace talus {
 
-/// Everything a run writes: checkpoints, snapshots, diagnostics, the log with progress, and the table of where time went.
-/// Whatever cannot be written ends the run with AgreedError (exit code 3). All methods are collective.
+/// Everything a run writes: checkpoints, snapshots, diagnostics, the log with progress, and the table of
+/// where time went. Whatever cannot be written ends the run with AgreedError (exit code 3). All methods are
+/// collective.
 class Recorder {
   public:
     /// Makes the folder. A new run that finds another run's results there moves them to `folder`.1, .2, ...
-    Recorder(const Communicator& comm, std::filesystem::path folder, const Scene& scene, const SceneSetup& setup,
-             bool is_new);
+    Recorder(const Communicator& comm, std::filesystem::path folder, const Scene& scene,
+             const SceneSetup& setup, bool is_new);
     ~Recorder();
 
     const std::filesystem::path& folder() const { return folder_; }

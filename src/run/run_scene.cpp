@@ -50,7 +50,8 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
             recorder.after_step(*simulation);
         }
     } catch (const AgreedError& error) {
-        throw AgreedError(error.exit_code, fmt::format("{}\n{}", error.what(), recorder.last_checkpoint_hint()));
+        throw AgreedError(error.exit_code,
+                          fmt::format("{}\n{}", error.what(), recorder.last_checkpoint_hint()));
     }
     recorder.finish(*simulation);
     return exit_done;

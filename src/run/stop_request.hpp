@@ -7,15 +7,15 @@
 
 namespace talus {
 
-/// Asks a run to write a checkpoint and stop: SIGUSR1 to any rank, a file `stop` in the output folder, or the wall time
-/// of the job running out.
+/// Asks a run to write a checkpoint and stop: SIGUSR1 to any rank, a file `stop` in the output folder, or the
+/// wall time of the job running out.
 class StopRequest {
   public:
     /// Installs the signal handler. `walltime` [s] is counted from now.
     StopRequest(const Communicator& comm, std::filesystem::path folder, double walltime);
 
-    /// Why to stop, the same on every rank; empty: go on. `step_seconds` is the longest wall time between two calls; the
-    /// wall time is said to run out while there is still time for a few of them. Collective.
+    /// Why to stop, the same on every rank; empty: go on. `step_seconds` is the longest wall time between two
+    /// calls; the wall time is said to run out while there is still time for a few of them. Collective.
     std::string reason(double step_seconds);
 
   private:

@@ -71,14 +71,16 @@ VelocityField read_velocity_field(const Section& table, int dimension) {
                         table.number("phase", "rad", 0.0)};
 }
 
-/// Spacing from `spacing` or from the wanted number of particles.
-double read_spacing(const Section& table, const BodyShape& shape, int dimension) {
+/// Spacing from `spacing` or from the wanted number of particles; by default that of the scene's first body,
+/// if any.
+double read_spacing(const Section& table, const BodyShape& shape, int dimension, double first_spacing) {
     if (table.has("spacing") && table.has("particles"))
         table.error("particles", "give spacing or particles, not both");
     if (table.has("particles")) {
         const auto count = static_cast<double>(table.integer("particles", {}, 1, std::int64_t{1} << 40));
         return std::pow(volume(shape, dimension) / count, 1.0 / dimension);
     }
+    if (first_spacing > 0) return table.number("spacing", "m", first_spacing, positive);
     return table.number("spacing", "m", {}, positive);
 }
 
@@ -99,14 +101,15 @@ double read_energy(const Section& table, const Material& material, double densit
 
 }  // namespace
 
-Body read_body(const Section& table, const Material& material, int dimension, const BoxShape& domain) {
+Body read_body(const Section& table, const Material& material, int dimension, const BoxShape& domain,
+               double first_spacing) {
     Body body;
     body.name = table.text("name", table.path());
     body.shape = read_shape(table, dimension, domain);
     body.lattice = table.choice("lattice", {"cubic", "close_packed"}, "close_packed") == "cubic"
                        ? Lattice::cubic
                        : Lattice::close_packed;
-    body.spacing = read_spacing(table, body.shape, dimension);
+    body.spacing = read_spacing(table, body.shape, dimension, first_spacing);
     body.jitter = table.number("jitter", "1", 0.0, {0, 0.5});
     body.velocity = origin_default(table, "velocity", "m/s", dimension);
     if (table.has("spin")) {

@@ -92,7 +92,7 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         settings.viscosity_beta = table.number("viscosity_beta", "1", 2.0, not_negative);
     }
     if (settings.kernel == sph::KernelKind::gaussian)
-        settings.cutoff = table.number("cutoff", "1", 2.0, {1, 3.1});
+        settings.cutoff = table.number("cutoff", "1", dimension == 3 ? 2.0 : 3.0, {1, 3.1});
     const std::string density = all_gas ? "summation" : "continuity";
     settings.density = table.choice("density", {"continuity", "summation"}, density) == "summation"
                            ? sph::DensityMethod::summation
@@ -129,7 +129,9 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     for (const Section& table : tables) {
         setup.simulation.materials.push_back(find_material(comm, scene, table));
         const Material& material = setup.simulation.materials.back();
-        setup.bodies.push_back(read_body(table, material, box.dimension, BoxShape{box.lower, box.upper}));
+        const double first_spacing = setup.bodies.empty() ? 0 : setup.bodies.front().spacing;
+        setup.bodies.push_back(
+            read_body(table, material, box.dimension, BoxShape{box.lower, box.upper}, first_spacing));
         setup.simulation.held.push_back(table.flag("held", false));
         for (int axis = 0; axis < box.dimension; ++axis) {
             const auto a = static_cast<std::size_t>(axis);

@@ -1,0 +1,245 @@
+#include "src/run/recorder.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/agree.hpp"
+#include "io/checkpoint.hpp"
+#include "io/csv.hpp"
+#include "io/progress.hpp"
+#include "io/snapshot.hpp"
+
+namespace talus {
+
+namespace {
+
+const std::vector<CsvColumn> diagnostics_columns = {
+    {"time", "s"},
+    {"time_step", "s"},
+    {"mass", "kg"},
+    {"kinetic_energy", "J"},
+    {"internal_energy", "J"},
+    {"total_energy", "J"},
+    {"momentum_x", "kg m s-1"},
+    {"momentum_y", "kg m s-1"},
+    {"momentum_z", "kg m s-1"},
+    {"angular_momentum_x", "kg m2 s-1"},
+    {"angular_momentum_y", "kg m2 s-1"},
+    {"angular_momentum_z", "kg m2 s-1"},
+    {"greatest_speed", "m s-1"},
+    {"least_density", "kg m-3"},
+    {"greatest_density", "kg m-3"},
+    {"least_pressure", "Pa"},
+    {"greatest_pressure", "Pa"},
+    {"mean_damage", "1"},
+};
+
+/// Whether an output that is due every `interval` fell due between two times; every call if it is 0.
+bool fell_due(double before, double now, double interval) {
+    return interval <= 0 || std::floor(now / interval) > std::floor(before / interval);
+}
+
+RunState run_state(const Simulation& simulation, const Scene& scene) {
+    RunState state;
+    state.time = simulation.time();
+    state.time_step = simulation.time_step();
+    state.step = simulation.step_count();
+    state.scene_text = scene.text();
+    state.resolved_scene = scene.resolved();
+    state.version = TALUS_VERSION;
+    return state;
+}
+
+bool holds_results(const std::filesystem::path& folder) {
+    std::error_code unreadable;
+    return std::filesystem::exists(folder / "diagnostics.csv", unreadable) ||
+           !list_checkpoints(folder).empty();
+}
+
+/// Moves a folder with results to the first free name among folder.1, folder.2, ...; returns that name.
+std::filesystem::path set_aside(const std::filesystem::path& folder) {
+    for (int n = 1;; ++n) {
+        std::filesystem::path aside = folder;
+        aside += fmt::format(".{}", n);
+        if (std::filesystem::exists(aside)) continue;
+        std::filesystem::rename(folder, aside);
+        return aside;
+    }
+}
+
+}  // namespace
+
+struct Recorder::Files {
+    std::shared_ptr<spdlog::logger> log;
+    std::unique_ptr<CsvWriter> diagnostics;
+    std::unique_ptr<Progress> progress;
+};
+
+Recorder::Recorder(const Communicator& comm, std::filesystem::path folder, const Scene& scene,
+                   const SceneSetup& setup, bool is_new)
+    : comm_(comm),
+      folder_(std::move(folder)),
+      scene_(scene),
+      setup_(setup),
+      files_(std::make_unique<Files>()) {
+    agree_on_root(comm_, [&] {
+        std::filesystem::path aside;
+        if (is_new && holds_results(folder_)) aside = set_aside(folder_);
+        std::filesystem::create_directories(folder_);
+        const auto console = std::make_shared<spdlog::sinks::stdout_color_sink_mt>();
+        const auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>((folder_ / "log.txt").string());
+        file->set_pattern("%Y-%m-%d %H:%M:%S %v");
+        console->set_pattern("%v");
+        files_->log = std::make_shared<spdlog::logger>("talus", spdlog::sinks_init_list{console, file});
+        files_->log->flush_on(spdlog::level::info);
+        if (!aside.empty()) files_->log->info("results of an earlier run moved to {}", aside.string());
+    });
+}
+
+Recorder::~Recorder() = default;
+
+std::unique_ptr<Simulation> Recorder::restore(const std::string& what) {
+    last_checkpoint_ = find_checkpoint(comm_, what, folder_);
+    ParticleSet particles = empty_particles(setup_);
+    const RunState state = read_checkpoint(comm_, last_checkpoint_, {&particles});
+    if (comm_.is_root()) {
+        files_->log->info("going on from {} (step {}, time {} s)", last_checkpoint_.string(), state.step,
+                          state.time);
+        if (state.resolved_scene != scene_.resolved())
+            files_->log->warn("the scene differs from the one that wrote this checkpoint");
+    }
+    auto simulation = std::make_unique<Simulation>(comm_, setup_.simulation, std::move(particles));
+    simulation->resume(state.time, state.time_step, state.step);
+    return simulation;
+}
+
+void Recorder::begin(Simulation& simulation, double end_time) {
+    const bool is_new = simulation.step_count() == 0;
+    first_step_ = simulation.step_count();
+    time_before_ = simulation.time();
+    if (comm_.is_root()) {
+        files_->log->info("{}", setup_.title);
+        files_->log->info(
+            "{} particles on {} ranks, {} bytes per particle in fields, first step {:.4g} s, results in {}",
+            simulation.total_particles(), comm_.size(), simulation.particles().bytes_per_particle(),
+            simulation.time_step(), folder_.string());
+    }
+    files_->diagnostics = std::make_unique<CsvWriter>(
+        comm_, folder_ / "diagnostics.csv", diagnostics_columns,
+        is_new ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));
+    if (is_new) {
+        write_diagnostics(simulation);
+        write_snapshot_now(simulation, 0);
+        write_checkpoint_now(simulation);
+    }
+    files_->progress = std::make_unique<Progress>(comm_.is_root(), Progress::Goal{end_time, {}});
+    began_ = step_began_ = last_checkpoint_time_ = std::chrono::steady_clock::now();
+}
+
+void Recorder::after_step(Simulation& simulation) {
+    const double time = simulation.time();
+    simulation.phases().enter(Phase::output);
+    if (fell_due(time_before_, time, setup_.output.diagnostics_interval)) write_diagnostics(simulation);
+    if (const double interval = setup_.output.snapshot_interval;
+        interval > 0 && fell_due(time_before_, time, interval))
+        write_snapshot_now(simulation, static_cast<int>(std::floor(time / interval)));
+    const auto now = std::chrono::steady_clock::now();
+    if (setup_.output.checkpoint_interval > 0) {
+        const std::chrono::duration<double> since = now - last_checkpoint_time_;
+        if (comm_.all_max(static_cast<int>(since.count() > setup_.output.checkpoint_interval)))
+            write_checkpoint_now(simulation);
+    }
+    files_->progress->update(simulation.step_count(), time, simulation.time_step(),
+                             simulation.total_particles());
+    simulation.phases().stop();
+    time_before_ = time;
+    longest_step_ = std::max(longest_step_, std::chrono::duration<double>(now - step_began_).count());
+    step_began_ = std::chrono::steady_clock::now();
+}
+
+void Recorder::stop_early(Simulation& simulation, const std::string& why) {
+    files_->progress->finish();
+    write_checkpoint_now(simulation);
+    if (comm_.is_root())
+        files_->log->info("stopped early: {}; go on with --restart latest (step {}, time {} s)", why,
+                          simulation.step_count(), simulation.time());
+    print_summary(simulation);
+}
+
+void Recorder::finish(Simulation& simulation) {
+    files_->progress->finish();
+    write_checkpoint_now(simulation);
+    if (setup_.output.snapshot_interval <= 0 && simulation.step_count() > 0)
+        write_snapshot_now(simulation, 1);
+    print_summary(simulation);
+}
+
+std::string Recorder::last_checkpoint_hint() const {
+    if (last_checkpoint_.empty()) return "no checkpoint was written yet";
+    return fmt::format("last checkpoint: {}", last_checkpoint_.string());
+}
+
+void Recorder::write_checkpoint_now(Simulation& simulation) {
+    const RunState state = run_state(simulation, scene_);
+    write_checkpoint(comm_, folder_, state, {&simulation.particles()});
+    last_checkpoint_ = find_checkpoint(comm_, "latest", folder_);
+    last_checkpoint_time_ = std::chrono::steady_clock::now();
+}
+
+void Recorder::write_snapshot_now(Simulation& simulation, int index) {
+    const ParticleSet& particles = simulation.particles();
+    std::vector<SnapshotField> fields;
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::mass, &field::internal_energy, &field::smoothing_length, &field::body,
+             &field::pressure, &field::sound_speed, &field::deviatoric_stress, &field::damage})
+        if (particles.has(*info)) fields.push_back({.field = info});
+    fields.push_back({.field = particles.has(field::density) ? &field::density : &field::predicted_density,
+                      .name = snapshot_name(field::density)});
+    write_snapshot(comm_, folder_, static_cast<std::uint64_t>(index), run_state(simulation, scene_),
+                   particles, fields);
+}
+
+void Recorder::write_diagnostics(Simulation& simulation) {
+    const Totals t = simulation.totals();
+    const std::vector<double> row = {
+        simulation.time(),     simulation.time_step(), t.mass,
+        t.kinetic_energy,      t.internal_energy,      t.kinetic_energy + t.internal_energy,
+        t.momentum[0],         t.momentum[1],          t.momentum[2],
+        t.angular_momentum[0], t.angular_momentum[1],  t.angular_momentum[2],
+        t.greatest_speed,      t.least_density,        t.greatest_density,
+        t.least_pressure,      t.greatest_pressure,    t.mean_damage};
+    if (simulation.step_count() == 0) first_energy_ = row[5];
+    files_->diagnostics->write(simulation.step_count(), row);
+}
+
+void Recorder::print_summary(Simulation& simulation) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+    PhaseTimer timer;
+    for (std::size_t p = 0; p < phase_names.size(); ++p)
+        timer.add(phase_names[p], simulation.phases().seconds()[p]);
+    const std::string table = timer.report(comm_, seconds);
+    const std::uint64_t pairs = comm_.all_sum(simulation.pairs());
+    const Totals totals = simulation.totals();
+    if (!comm_.is_root()) return;
+    const auto steps = static_cast<double>(simulation.step_count() - first_step_);
+    const double updates = steps * static_cast<double>(simulation.total_particles());
+    files_->log->info(
+        "step {}, time {:.6g} s after {:.1f} s: {:.4g} particle-steps/s, {:.1f} pairs per particle and step",
+        simulation.step_count(), simulation.time(), seconds, updates / seconds,
+        updates > 0 ? static_cast<double>(pairs) / updates : 0.0);
+    if (first_energy_ != 0) {
+        const double energy = totals.kinetic_energy + totals.internal_energy;
+        files_->log->info("total energy {:.9g} J, changed by {:.1e} of its first value", energy,
+                          energy / first_energy_ - 1);
+    }
+    files_->log->info("decomposition cut {} times, imbalance of work {:.3f}\n{}",
+                      simulation.decomposition().rebalance_count(),
+                      simulation.decomposition().measured_imbalance(), table);
+}
+
+}  // namespace talus
