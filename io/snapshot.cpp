@@ -42,7 +42,7 @@ Arrangement arrangement(const FieldInfo& info, int dimension) {
             made.sources = {0};
             break;
         case Shape::vector:
-        case Shape::position:
+        case Shape::point:
             for (int axis = 0; axis < 3; ++axis) made.sources.push_back(axis < dimension ? axis : -1);
             break;
         case Shape::symmetric_tensor:
@@ -140,7 +140,7 @@ DatasetPlan plan_offsets(const Communicator& comm, std::uint64_t total) {
     plan.path = "/VTKHDF/Offsets";
     plan.type = ValueType::u64;
     plan.total = total + 1;
-    plan.unit = "1";
+    plan.unit = std::string("1");
     plan.description = "first point of each VTK cell";
     plan.rows = rows_of_rank(plan.total, comm.rank(), comm.size());
     plan.data = [rows = plan.rows] {
@@ -255,11 +255,11 @@ void add_to_series(const std::filesystem::path& file, const std::filesystem::pat
     const std::string name = file.filename().string();
     std::erase_if(entries, [&](const auto& entry) { return entry.second >= time || entry.first >= name; });
     entries.emplace_back(name, time);
-    std::string text = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n";
-    for (std::size_t k = 0; k < entries.size(); ++k)
-        text += fmt::format("    {{\"name\": \"{}\", \"time\": {}}}{}\n", entries[k].first, entries[k].second,
-                            k + 1 < entries.size() ? "," : "");
-    replace_file(series, text + "  ]\n}\n");
+    std::vector<std::string> lines;
+    for (const auto& [entry, when] : entries)
+        lines.push_back(fmt::format(R"(    {{"name": "{}", "time": {}}})", entry, when));
+    replace_file(series, fmt::format("{{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n{}\n  ]\n}}\n",
+                                     fmt::join(lines, ",\n")));
 }
 
 }  // namespace
