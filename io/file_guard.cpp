@@ -114,6 +114,13 @@ void write_guard(const std::filesystem::path& file, const std::vector<DataRegion
     overwrite_start(file, text);
 }
 
+bool is_guarded(const std::filesystem::path& file) {
+    const FileReader reader(file);
+    std::string start(std::min<std::uint64_t>(reader.size(), first_line.size()), '\0');
+    reader.read(0, std::as_writable_bytes(std::span(start)));
+    return start == first_line;
+}
+
 void check_guard(const std::filesystem::path& file) {
     const FileReader reader(file);
     const Index index = read_index(reader);

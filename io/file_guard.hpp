@@ -22,6 +22,9 @@ std::uint64_t guard_size(std::size_t regions);
 /// file.
 void write_guard(const std::filesystem::path& file, const std::vector<DataRegion>& regions);
 
+/// Whether the file begins like one with such an index.
+bool is_guarded(const std::filesystem::path& file);
+
 /// Checks the file's size and everything but the data. Messages begin with the damaged section.
 void check_guard(const std::filesystem::path& file);
 
