@@ -132,7 +132,7 @@ void write_checkpoint(const Communicator& comm, const std::filesystem::path& dir
                       const std::vector<const ParticleSet*>& sets) {
     ParticleFilePlan plan;
     plan.file = directory / fmt::format("{}{:09}{}", prefix, state.step, suffix);
-    plan.format = hdf5::Format::checksummed;
+    plan.guarded = true;
     std::vector<IdOrder> orders;
     orders.reserve(sets.size());
     for (const ParticleSet* set : sets) orders.emplace_back(comm, set->own(field::id), set->name());

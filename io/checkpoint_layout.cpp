@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstring>
 #include <stdexcept>
 
-#include "io/durable.hpp"
+#include "io/file_guard.hpp"
 #include "io/hashing.hpp"
 #include "io/particle_file.hpp"
 
@@ -75,26 +74,6 @@ auto in_section(const std::string& section, const Action& action) {
     } catch (const std::exception& failure) {
         throw std::runtime_error(fmt::format("{}: {}", section, failure.what()));
     }
-}
-
-/// HDF5 says little of a file that is cut short; its superblock (versions 2 and 3) tells how long it should
-/// be.
-void check_length(const std::filesystem::path& file) {
-    const FileReader reader(file);
-    constexpr std::size_t superblock_bytes = 48;
-    if (reader.size() < superblock_bytes)
-        throw std::runtime_error(fmt::format("superblock: cut short, the file has {} bytes", reader.size()));
-    std::array<std::byte, superblock_bytes> start;
-    reader.read(0, start);
-    if (std::memcmp(start.data(), "\x89HDF\r\n\x1a\n", 8) != 0)
-        throw std::runtime_error("superblock: not an HDF5 file, or its first bytes are damaged");
-    const int version = std::to_integer<int>(start[8]);
-    if (version != 2 && version != 3) return;
-    std::uint64_t end = 0;
-    std::memcpy(&end, start.data() + 28, sizeof end);
-    if (reader.size() < end)
-        throw std::runtime_error(
-            fmt::format("end of file: cut short, {} of {} bytes are there", reader.size(), end));
 }
 
 StoredSet read_set(hid_t file, const std::string& name) {
@@ -170,7 +149,7 @@ void write_run_state(hid_t file, const RunState& state) {
 
 CheckpointLayout read_layout(const std::filesystem::path& path) {
     return in_section(path.string(), [&] {
-        check_length(path);
+        check_guard(path);
         const hdf5::Handle file = hdf5::open_file(path, false);
         if (hdf5::text_attribute(file, "format") != checkpoint_format)
             throw std::runtime_error("not a checkpoint of Talus");

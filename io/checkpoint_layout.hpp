@@ -6,8 +6,9 @@
 #include "io/hdf5_file.hpp"
 #include "io/run_state.hpp"
 
-/// What a checkpoint file holds: /state (attributes), /scene and /resolved_scene (texts), and a dataset
-/// /sets/<set>/<field> for every field, rows in order of id. Inside of io/.
+/// What a checkpoint file holds behind the index of file_guard.hpp: /state (attributes), /scene and
+/// /resolved_scene (texts), and a dataset /sets/<set>/<field> for every field, rows in order of id. Inside of
+/// io/.
 namespace talus {
 
 inline constexpr const char* checkpoint_format = "talus-checkpoint";

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace talus::hdf5 {
@@ -36,6 +37,14 @@ Handle text_type() {
     Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
     check(H5Tset_size(type, H5T_VARIABLE), "make a text type");
     check(H5Tset_cset(type, H5T_CSET_UTF8), "make a text type");
+    return type;
+}
+
+Handle fixed_text_type(std::size_t size, H5T_cset_t characters) {
+    Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
+    check(H5Tset_size(type, std::max<std::size_t>(size, 1)), "make a text type");
+    check(H5Tset_strpad(type, H5T_STR_NULLPAD), "make a text type");
+    check(H5Tset_cset(type, characters), "make a text type");
     return type;
 }
 
@@ -118,12 +127,12 @@ std::optional<ValueType> value_type(hid_t type) {
     return {};
 }
 
-Handle create_file(const std::filesystem::path& file, Format format) {
+Handle create_file(const std::filesystem::path& file, std::uint64_t user_block) {
     const Handle access = access_list();
-    const H5F_libver_t oldest = format == Format::checksummed ? H5F_LIBVER_V18 : H5F_LIBVER_EARLIEST;
-    check(H5Pset_libver_bounds(access, oldest, H5F_LIBVER_V18), "set the format version");
     check(H5Pset_alignment(access, 1 << 16, 1 << 12), "set the alignment");  // large datasets begin on a page
-    return Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+    const Handle creation = property_list(H5P_FILE_CREATE);
+    check(H5Pset_userblock(creation, user_block), "set the user block");
+    return Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose,
                   fmt::format("create {}", file.string()));
 }
 
@@ -166,12 +175,11 @@ Handle open_dataset(hid_t parent, const std::string& path) {
 void write_text(hid_t parent, const std::string& path, const std::string& text) {
     const Handle creation = property_list(H5P_DATASET_CREATE);
     check(H5Pset_obj_track_times(creation, false), "make dataset " + path);
-    const Handle type = text_type();
+    const Handle type = fixed_text_type(text.size(), H5T_CSET_UTF8);
     const Handle space = scalar_space();
     const Handle dataset(H5Dcreate2(parent, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
                          H5Dclose, "make dataset " + path);
-    const char* words = text.c_str();
-    check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &words), "write dataset " + path);
+    check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), "write dataset " + path);
 }
 
 std::string read_text(hid_t parent, const std::string& path) {
@@ -201,10 +209,8 @@ void set_attribute(hid_t object, const std::string& name, std::span<const double
     write_attribute(object, name, H5T_NATIVE_DOUBLE, values.size(), values.data());
 }
 void set_fixed_text(hid_t object, const std::string& name, std::string_view value) {
-    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a text type");
-    check(H5Tset_size(type, value.size()), "make a text type");
-    check(H5Tset_strpad(type, H5T_STR_NULLPAD), "make a text type");
-    write_attribute(object, name, type, scalar_space(), value.data());
+    const Handle type = fixed_text_type(value.size(), H5T_CSET_ASCII);
+    write_attribute(object, name, type, scalar_space(), std::string(value).c_str());
 }
 
 void change_attribute(hid_t object, const std::string& name, std::uint64_t value) {

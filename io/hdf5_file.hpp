@@ -48,10 +48,9 @@ hid_t native_type(ValueType type);
 /// The reverse; nothing if it is none of ours.
 std::optional<ValueType> value_type(hid_t type);
 
-enum class Format { portable, checksummed };  ///< checksummed: metadata guarded by HDF5 (version 1.8 on)
-
 /// Files are locked neither for reading nor for writing: the names they are written under are nobody else's.
-Handle create_file(const std::filesystem::path& file, Format format);
+/// The first `user_block` bytes are left free (0, or a power of two from 512 on).
+Handle create_file(const std::filesystem::path& file, std::uint64_t user_block = 0);
 Handle open_file(const std::filesystem::path& file, bool writable);
 Handle create_group(hid_t parent, const std::string& path);
 Handle open_group(hid_t parent, const std::string& path);
@@ -60,6 +59,7 @@ Handle open_group(hid_t parent, const std::string& path);
 Handle create_dataset(hid_t parent, const std::string& path, ValueType type, std::uint64_t rows,
                       std::size_t components);
 Handle open_dataset(hid_t parent, const std::string& path);
+/// A text of fixed length as a dataset of one element.
 void write_text(hid_t parent, const std::string& path, const std::string& text);
 std::string read_text(hid_t parent, const std::string& path);
 
@@ -68,7 +68,7 @@ void set_attribute(hid_t object, const std::string& name, std::uint64_t value);
 void set_attribute(hid_t object, const std::string& name, const std::string& value);
 void set_attribute(hid_t object, const std::string& name, std::span<const std::int64_t> values);
 void set_attribute(hid_t object, const std::string& name, std::span<const double> values);
-/// ASCII of fixed length, as VTK wants it.
+/// Of fixed length, as VTK wants it.
 void set_fixed_text(hid_t object, const std::string& name, std::string_view value);
 /// Changes the value of an existing attribute.
 void change_attribute(hid_t object, const std::string& name, std::uint64_t value);

@@ -8,6 +8,7 @@
 
 #include "io/agree.hpp"
 #include "io/durable.hpp"
+#include "io/file_guard.hpp"
 #include "io/hashing.hpp"
 
 namespace talus {
@@ -31,7 +32,7 @@ void create_layout(const ParticleFilePlan& plan, const std::filesystem::path& te
     std::uint64_t bytes = std::uint64_t{1} << 20;
     for (const DatasetPlan& dataset : plan.datasets) bytes += dataset.total * dataset.row_bytes();
     check_space(temporary.has_parent_path() ? temporary.parent_path() : ".", bytes);
-    Handle file = hdf5::create_file(temporary, plan.format);
+    Handle file = hdf5::create_file(temporary, plan.guarded ? guard_size(plan.datasets.size()) : 0);
     for (std::size_t k = 0; k < plan.datasets.size(); ++k) {
         const DatasetPlan& dataset = plan.datasets[k];
         const auto slash = dataset.path.rfind('/');
@@ -139,6 +140,12 @@ void write_temporary(const Communicator& comm, const ParticleFilePlan& plan,
             hdf5::change_attribute(hdf5::open_dataset(serial, plan.datasets[k].path), checksum_attribute,
                                    written[k].checksum);
         serial.close("write the checksums");
+        if (!plan.guarded) return;
+        std::vector<DataRegion> regions;
+        for (std::size_t k = 0; k < plan.datasets.size(); ++k)
+            if (const DatasetPlan& dataset = plan.datasets[k]; dataset.total > 0)
+                regions.push_back({dataset.path, written[k].offset, dataset.total * dataset.row_bytes()});
+        write_guard(temporary, regions);
     });
     agree_on(comm, [&] {
         sync_file(temporary);

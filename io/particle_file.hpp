@@ -26,7 +26,7 @@ struct DatasetPlan {
 /// A file to be written.
 struct ParticleFilePlan {
     std::filesystem::path file;
-    hdf5::Format format = hdf5::Format::portable;
+    bool guarded = false;  ///< with the index of file_guard.hpp
     std::vector<DatasetPlan> datasets;
     /// Adds everything else to the file once the (still empty) datasets are there. Called on the root only.
     std::function<void(hid_t file)> describe;

@@ -1,0 +1,16 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+/// Looking into files, on one rank and without a scene. All throw AgreedError (exit code 3) if the file
+/// cannot be understood.
+namespace talus {
+
+/// What is in a checkpoint or snapshot, as text of several lines: format, step, time, sets, fields with
+/// units, counts and ranges, and whether the checksums hold.
+std::string describe_file(const std::filesystem::path& file);
+
+/// state_hash() of the state in a checkpoint; a folder means its newest one. Checksums are verified.
+std::string hash_file(const std::filesystem::path& file_or_folder);
+
+}  // namespace talus
