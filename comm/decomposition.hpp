@@ -22,11 +22,13 @@ class Decomposition {
     /// halo(). Throws AgreedError (exit code 1) naming the id if a particle got lost.
     void arrange(ParticleSet& particles, const CellGrid& grid);
 
-    /// Collective. Cuts the blocks of a new grid, weighted by their numbers of particles. arrange() must follow.
+    /// Collective. Cuts the blocks of a new grid, weighted by their numbers of particles. arrange() must
+    /// follow.
     void divide(const ParticleSet& particles, const CellGrid& grid);
 
-    /// Collective. Cuts the blocks anew, weighted by the work measured in each own cell since the last arrange(), in
-    /// order (any unit), if that lowers the imbalance enough to pay. True if ownership changed; arrange() must follow.
+    /// Collective. Cuts the blocks anew, weighted by the work measured in each own cell since the last
+    /// arrange(), in order (any unit), if that lowers the imbalance enough to pay. True if ownership changed;
+    /// arrange() must follow.
     bool rebalance(std::span<const double> work);
 
     /// Collective. The number of particles over all ranks, fixed from now on: arrange() checks it.
@@ -60,10 +62,9 @@ class Decomposition {
     Halo halo_;
     CellTable table_;
     std::vector<CellEntry> own_cells_;
-    std::vector<CellKey> keys_;          ///< cell of each own particle at the last sort
+    std::vector<CellKey> keys_;  ///< cell of each own particle at the last sort: a hint, see migrate()
     std::vector<std::uint32_t> stayed_;  ///< particles still in their cell, in order
     std::vector<std::uint32_t> moved_;   ///< particles that changed cell or arrived
-    double grid_cell_size_ = 0;          ///< keys_ are of a grid with these cells
     Ledger expected_;
     double measured_imbalance_ = 1;
     int rebalance_count_ = 0;
