@@ -2,6 +2,7 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -81,17 +82,22 @@ class Communicator {
     /// Concatenation of every rank's values, in order of rank, on every rank.
     template <class T>
     std::vector<T> all_gather(std::span<const T> values) const {
-        const int bytes = static_cast<int>(values.size_bytes());
-        std::vector<int> counts(static_cast<std::size_t>(size_)), starts(static_cast<std::size_t>(size_));
-        MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, handle_);
-        int total = 0;
-        for (std::size_t r = 0; r < counts.size(); ++r) {
-            starts[r] = total;
-            total += counts[r];
+        const auto bytes = static_cast<std::int64_t>(values.size_bytes());
+        const auto ranks = static_cast<std::size_t>(size_);
+        std::vector<std::int64_t> all_bytes(ranks);
+        MPI_Allgather(&bytes, 1, MPI_INT64_T, all_bytes.data(), 1, MPI_INT64_T, handle_);
+        std::vector<int> counts(ranks), starts(ranks);
+        std::int64_t total = 0;
+        for (std::size_t r = 0; r < ranks; ++r) {
+            starts[r] = static_cast<int>(total);
+            counts[r] = static_cast<int>(all_bytes[r]);
+            total += all_bytes[r];
         }
+        if (total > std::numeric_limits<int>::max())  // the same on every rank
+            throw std::length_error("more than 2 GiB gathered on every rank");
         std::vector<T> all(static_cast<std::size_t>(total) / sizeof(T));
-        MPI_Allgatherv(values.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE,
-                       handle_);
+        MPI_Allgatherv(values.data(), static_cast<int>(bytes), MPI_BYTE, all.data(), counts.data(),
+                       starts.data(), MPI_BYTE, handle_);
         return all;
     }
 
@@ -103,6 +109,14 @@ class Communicator {
 
     void all_barrier() const { MPI_Barrier(handle_); }
 
+    /// A tag for one round of messages whose receivers do not know who will send. Two rounds in a row never
+    /// share it, whoever asks: a fast rank may be in the next one already. Every rank asks in the same order.
+    int next_round_tag() const {
+        constexpr int first_tag = 100;
+        round_ = 1 - round_;
+        return first_tag + round_;
+    }
+
   private:
     template <class T>
     void reduce(std::span<T> values, MPI_Op op) const {
@@ -113,6 +127,7 @@ class Communicator {
     MPI_Comm handle_ = MPI_COMM_NULL;
     int rank_ = 0;
     int size_ = 1;
+    mutable int round_ = 0;
 };
 
 /// All ranks of the program.

@@ -34,6 +34,10 @@ void Decomposition::arrange(ParticleSet& particles, const CellGrid& grid) {
                                       expected_.count, found.count);
     if (found.count + 1 == expected_.count)
         message += fmt::format("; lost: id {}", expected_.id_sum - found.id_sum);
+    else if (found.count == expected_.count + 1)
+        message += fmt::format("; found twice: id {}", found.id_sum - expected_.id_sum);
+    else if (found.count == expected_.count)
+        message += ", but not the same ids";
     throw AgreedError(1, message);
 }
 
@@ -80,9 +84,12 @@ void Decomposition::migrate(ParticleSet& particles, const CellGrid& grid) {
     const int dimension = particles.dimension();
     const double* position[3] = {};
     for (int axis = 0; axis < dimension; ++axis) position[axis] = particles.data(field::position, axis);
-    const bool same_grid = grid.cell_size(0) == grid_cell_size_ && keys_.size() == particles.size();
-    grid_cell_size_ = grid.cell_size(0);
+    const std::uint64_t* id = particles.data(field::id);
+    // Most particles kept their cell and thus their place. The former keys only say which to try: one stays
+    // if it also follows the last that stayed, whatever happened to the set since.
     keys_.resize(particles.size());
+    CellKey last_key = 0;
+    std::uint64_t last_id = 0;
     stayed_.clear();
     moved_.clear();
     std::map<int, std::vector<std::uint32_t>> leaving;
@@ -97,10 +104,16 @@ void Decomposition::migrate(ParticleSet& particles, const CellGrid& grid) {
             known_key = key;
             known_owner = partition_.owner_of(cell);
         }
-        if (known_owner != comm_.rank())
-            leaving[known_owner].push_back(static_cast<std::uint32_t>(i));
-        else
-            (same_grid && keys_[i] == key ? stayed_ : moved_).push_back(static_cast<std::uint32_t>(i));
+        const auto index = static_cast<std::uint32_t>(i);
+        if (known_owner != comm_.rank()) {
+            leaving[known_owner].push_back(index);
+        } else if (keys_[i] == key && (key > last_key || (key == last_key && id[i] >= last_id))) {
+            stayed_.push_back(index);
+            last_key = key;
+            last_id = id[i];
+        } else {
+            moved_.push_back(index);
+        }
         keys_[i] = key;
     }
 
@@ -150,13 +163,21 @@ void Decomposition::list_own_cells() {
 
 void Decomposition::divide(const ParticleSet& particles, const CellGrid& grid) {
     if (comm_.size() == 1) return;
-    BlockWork mine;
+    std::vector<std::uint64_t> keys(particles.size());
     for (std::size_t i = 0; i < particles.size(); ++i) {
         Cell cell{};
         for (int axis = 0; axis < particles.dimension(); ++axis)
             cell[static_cast<std::size_t>(axis)] =
                 grid.index_along(axis, particles.data(field::position, axis)[i]);
-        mine[block_key_of(cell, partition_.block_shift())] += 1;
+        keys[i] = block_key_of(cell, partition_.block_shift());
+    }
+    std::sort(keys.begin(), keys.end());
+    BlockWork mine;
+    for (std::size_t i = 0; i < keys.size();) {
+        const auto end = std::upper_bound(keys.begin() + static_cast<std::ptrdiff_t>(i), keys.end(), keys[i]);
+        const auto next = static_cast<std::size_t>(end - keys.begin());
+        mine.emplace_hint(mine.end(), keys[i], static_cast<double>(next - i));
+        i = next;
     }
     deal(mine, -1);
 }

@@ -62,10 +62,9 @@ class Decomposition {
     Halo halo_;
     CellTable table_;
     std::vector<CellEntry> own_cells_;
-    std::vector<CellKey> keys_;          ///< cell of each own particle at the last sort
+    std::vector<CellKey> keys_;  ///< cell of each own particle at the last sort: a hint, see migrate()
     std::vector<std::uint32_t> stayed_;  ///< particles still in their cell, in order
     std::vector<std::uint32_t> moved_;   ///< particles that changed cell or arrived
-    double grid_cell_size_ = 0;          ///< keys_ are of a grid with these cells
     Ledger expected_;
     double measured_imbalance_ = 1;
     int rebalance_count_ = 0;

@@ -166,6 +166,10 @@ void Halo::begin(ParticleSet& particles, std::initializer_list<const FieldInfo*>
     fields_.clear();
     for (const FieldInfo* info : fields)
         if (particles.has(*info)) fields_.push_back(info);
+    // Widest values first, so that every value in a message is aligned.
+    std::stable_sort(fields_.begin(), fields_.end(), [](const FieldInfo* a, const FieldInfo* b) {
+        return size_of(a->type) > size_of(b->type);
+    });
     requests_.clear();
     std::size_t particle_bytes = 0;
     for (const FieldInfo* info : fields_)

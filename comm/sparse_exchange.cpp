@@ -4,10 +4,18 @@
 
 namespace talus {
 
+namespace {
+std::vector<std::byte>& parcel_of(std::vector<Parcel>& parcels, int rank) {
+    const auto at = std::find_if(parcels.begin(), parcels.end(),
+                                 [rank](const Parcel& parcel) { return parcel.rank == rank; });
+    if (at != parcels.end()) return at->bytes;
+    parcels.push_back({rank, {}});
+    return parcels.back().bytes;
+}
+}  // namespace
+
 std::vector<Parcel> SparseExchange::operator()(std::vector<Parcel> outgoing) {
-    constexpr int first_tag = 100;
-    const int tag = first_tag + round_;
-    round_ = 1 - round_;
+    const int tag = comm_.next_round_tag();
 
     std::vector<Parcel> incoming;
     std::vector<MPI_Request> sends;
@@ -16,10 +24,14 @@ std::vector<Parcel> SparseExchange::operator()(std::vector<Parcel> outgoing) {
             incoming.push_back(std::move(parcel));
             continue;
         }
-        MPI_Request request;
-        MPI_Issend(parcel.bytes.data(), static_cast<int>(parcel.bytes.size()), MPI_BYTE, parcel.rank, tag,
-                   comm_.handle(), &request);
-        sends.push_back(request);
+        std::size_t sent = 0;
+        do {
+            const std::size_t bytes = std::min(parcel.bytes.size() - sent, largest_message_);
+            sends.emplace_back();
+            MPI_Issend(parcel.bytes.data() + sent, static_cast<int>(bytes), MPI_BYTE, parcel.rank, tag,
+                       comm_.handle(), &sends.back());
+            sent += bytes;
+        } while (sent < parcel.bytes.size());
     }
 
     MPI_Request barrier = MPI_REQUEST_NULL;
@@ -31,10 +43,11 @@ std::vector<Parcel> SparseExchange::operator()(std::vector<Parcel> outgoing) {
         if (arrived) {
             int bytes = 0;
             MPI_Get_count(&status, MPI_BYTE, &bytes);
-            Parcel parcel{status.MPI_SOURCE, std::vector<std::byte>(static_cast<std::size_t>(bytes))};
-            MPI_Recv(parcel.bytes.data(), bytes, MPI_BYTE, status.MPI_SOURCE, tag, comm_.handle(),
+            std::vector<std::byte>& received = parcel_of(incoming, status.MPI_SOURCE);
+            const std::size_t before = received.size();  // pieces of one sender arrive in order
+            received.resize(before + static_cast<std::size_t>(bytes));
+            MPI_Recv(received.data() + before, bytes, MPI_BYTE, status.MPI_SOURCE, tag, comm_.handle(),
                      MPI_STATUS_IGNORE);
-            incoming.push_back(std::move(parcel));
         }
         if (in_barrier) {
             MPI_Test(&barrier, &all_done, MPI_STATUS_IGNORE);

@@ -17,14 +17,17 @@ struct Parcel {
 /// ranks. T. Hoefler, C. Siebert, A. Lumsdaine, PPoPP 2010 ("NBX").
 class SparseExchange {
   public:
-    explicit SparseExchange(const Communicator& comm) : comm_(comm) {}
+    /// Parcels above `largest_message` bytes travel in pieces, for MPI counts are ints.
+    explicit SparseExchange(const Communicator& comm, std::size_t largest_message = std::size_t{1} << 30)
+        : comm_(comm), largest_message_(largest_message) {}
 
-    /// Collective. Parcels to the own rank are handed back without MPI. The result is sorted by rank.
+    /// Collective. At most one parcel a rank; those to the own rank are handed back without MPI. The result
+    /// is sorted by rank.
     std::vector<Parcel> operator()(std::vector<Parcel> outgoing);
 
   private:
     const Communicator& comm_;
-    int round_ = 0;  ///< consecutive rounds use different tags: a fast rank may already be in the next one
+    std::size_t largest_message_;
 };
 
 }  // namespace talus

@@ -1,5 +1,6 @@
 #include "domain/boundary.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace talus {
@@ -48,6 +49,22 @@ void wrap_axis(std::span<double> x, double lower, double upper) {
     }
 }
 
+/// Brings a coordinate back between two walls; true if it was mirrored an odd number of times.
+bool reflect(double& x, double lower, double upper) {
+    if (x >= lower && x <= upper) return false;
+    const double mirrored = 2 * (x < lower ? lower : upper) - x;
+    if (mirrored >= lower && mirrored <= upper) {
+        x = mirrored;
+        return true;
+    }
+    const double length = upper - lower;  // further out than the box is long
+    double beyond = std::fmod(x - lower, 2 * length);
+    if (beyond < 0) beyond += 2 * length;
+    const bool odd = beyond > length;
+    x = std::clamp(lower + (odd ? 2 * length - beyond : beyond), lower, upper);  // NaN stays NaN
+    return odd;
+}
+
 }  // namespace
 
 void apply_boundaries(ParticleSet& particles, const Box& box) {
@@ -57,12 +74,8 @@ void apply_boundaries(ParticleSet& particles, const Box& box) {
         if (box.boundary[a] == Boundary::periodic) {
             wrap_axis(x, box.lower[a], box.upper[a]);
         } else if (box.boundary[a] == Boundary::reflecting) {
-            for (std::size_t i = 0; i < x.size(); ++i) {
-                const double wall = x[i] < box.lower[a] ? box.lower[a] : box.upper[a];
-                if (x[i] >= box.lower[a] && !(x[i] > box.upper[a])) continue;
-                x[i] = 2 * wall - x[i];
-                mirror_state(particles, i, axis);
-            }
+            for (std::size_t i = 0; i < x.size(); ++i)
+                if (reflect(x[i], box.lower[a], box.upper[a])) mirror_state(particles, i, axis);
         }
     }
 }
