@@ -179,9 +179,17 @@ void Recorder::finish(Simulation& simulation) {
     print_summary(simulation);
 }
 
-std::string Recorder::last_checkpoint_hint() const {
-    if (last_checkpoint_.empty()) return "no checkpoint was written yet";
-    return fmt::format("last checkpoint: {}", last_checkpoint_.string());
+std::string Recorder::after_failure(const Simulation& simulation) {
+    const std::filesystem::path folder = folder_ / "failed";
+    std::string message = fmt::format("last checkpoint: {}", last_checkpoint_.string());
+    try {
+        agree_on_root(comm_, [&] { std::filesystem::create_directories(folder); });
+        write_checkpoint(comm_, folder, run_state(simulation, scene_), {&simulation.particles()});
+        message += fmt::format("\nstate that failed: {}", find_checkpoint(comm_, folder, folder_).string());
+    } catch (const AgreedError& error) {
+        message += fmt::format("\nthe state that failed could not be kept: {}", error.what());
+    }
+    return message;
 }
 
 void Recorder::write_checkpoint_now(Simulation& simulation) {
