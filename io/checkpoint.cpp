@@ -30,10 +30,16 @@ std::int64_t step_of(const std::filesystem::path& file) {
     return failure == std::errc() && end == last ? step : -1;
 }
 
-/// Removes all but the newest checkpoints, and what interrupted writers left.
-void remove_old(const std::filesystem::path& directory) {
-    const auto files = list_checkpoints(directory);
-    for (std::size_t k = kept; k < files.size(); ++k) std::filesystem::remove(files[k]);
+/// Removes all but the newest checkpoints up to `step`, and what interrupted writers left. Later steps belong
+/// to a run that was given up for this one: they are put out of the way, not removed.
+void remove_old(const std::filesystem::path& directory, std::uint64_t step) {
+    std::size_t seen = 0;
+    for (const std::filesystem::path& file : list_checkpoints(directory)) {
+        if (step_of(file) > static_cast<std::int64_t>(step))
+            std::filesystem::rename(file, file.string() + ".superseded");
+        else if (++seen > kept)
+            std::filesystem::remove(file);
+    }
     for (const auto& entry : std::filesystem::directory_iterator(directory)) {
         const std::filesystem::path inner = entry.path().stem();
         if (entry.path().extension() == ".tmp" && step_of(inner) >= 0) std::filesystem::remove(entry.path());
@@ -155,7 +161,7 @@ void write_checkpoint(const Communicator& comm, const std::filesystem::path& dir
     }
     plan.describe = [&](hid_t file) { describe(file, state, sets, orders); };
     write_particle_file(comm, plan);
-    agree_on_root(comm, [&] { remove_old(directory); });
+    agree_on_root(comm, [&] { remove_old(directory, state.step); });
 }
 
 RunState read_checkpoint(const Communicator& comm, const std::filesystem::path& file,
