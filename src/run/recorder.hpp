@@ -45,6 +45,8 @@ class Recorder {
     void write_snapshot_now(Simulation& simulation, int index);
     void write_diagnostics(Simulation& simulation);
     void print_summary(Simulation& simulation);
+    void write_performance(const Simulation& simulation, const class PhaseTimer& timer, double seconds,
+                           std::uint64_t pairs);
 
     const Communicator& comm_;
     std::filesystem::path folder_;
