@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "domain/random.hpp"
 
 namespace talus {
