@@ -201,7 +201,8 @@ TEST(Partners, GatherCopiesTheirValues) {
 TEST(Partners, NoneInAnEmptyTable) {
     CellTable table;
     table.build({}, 3, 2);
-    table.for_each_own(Cells::all, [](const CellEntry&, std::span<const talus::Run>, std::size_t) { FAIL(); });
+    table.for_each_own(Cells::all,
+                       [](const CellEntry&, std::span<const talus::Run>, std::size_t) { FAIL(); });
 }
 
 }  // namespace
