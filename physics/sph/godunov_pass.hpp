@@ -6,43 +6,11 @@
 
 namespace talus::sph {
 
-/// Makes the records of the pair loop from the fields of all particles.
-template <int D, class Options>
-PairRecords<GodunovPlaces<D, Options>::count> godunov_records(const ParticleSet& particles,
-                                                              bool several_bodies) {
-    using Places = GodunovPlaces<D, Options>;
-    PairRecords<Places::count> records(particles.size_with_halo());
-    records.copy(Places::position, components<D>(particles, field::position));
-    records.copy(Places::velocity, components<D>(particles, field::predicted_velocity));
-    records.copy(Places::volume_gradient, components<D>(particles, field::volume_gradient));
-    records.copy(Places::pressure_gradient, components<D>(particles, field::pressure_gradient));
-    records.copy(Places::mass, components<1>(particles, field::mass));
-    records.copy(Places::density, components<1>(particles, field::predicted_density));
-    records.copy(Places::pressure, components<1>(particles, field::pressure));
-    records.copy(Places::sound_speed, components<1>(particles, field::sound_speed));
-    if constexpr (Options::strength)
-        records.copy(Places::stress, components<symmetric_count<D>>(particles, field::predicted_stress));
-    if constexpr (Options::quintic)
-        records.copy(Places::curvature, components<symmetric_count<D>>(particles, field::volume_curvature));
-    if constexpr (Options::variable_h)
-        records.copy(Places::h, components<1>(particles, field::smoothing_length));
-    const auto gradient = components<D * D>(particles, field::velocity_gradient);
-    const std::uint8_t* body = particles.data(field::body);
-    records.fill([=](std::size_t k, auto& values) {
-        for (int a = 0; a < D; ++a)
-            for (int b = a; b < D; ++b)
-                values[Places::strain_rate + symmetric_index<D>(a, b)] =
-                    0.5 * (gradient[a * D + b][k] + gradient[b * D + a][k]);
-        values[Places::specific_volume] = 1 / values[Places::density];
-        if constexpr (Options::bodies) values[Places::body] = several_bodies ? body[k] : 0;
-    });
-    return records;
-}
-
 template <int D, class Options>
 class GodunovPass {
   public:
-    GodunovPass(ParticleSet& particles, const Settings& settings, double time_step)
+    GodunovPass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
+                double time_step)
         : kernel_(settings.cutoff),
           settings_(settings),
           time_step_(time_step),
@@ -50,12 +18,32 @@ class GodunovPass {
           acceleration_(components_to_write<D>(particles, field::acceleration)),
           power_(particles.data(field::specific_power)),
           partners_(components<D>(particles, field::position), smoothing_length_, settings.force_support()),
-          records_(godunov_records<D, Options>(particles, settings.several_bodies)) {}
+          velocity_gradient_(components<D * D>(particles, field::velocity_gradient)),
+          body_(settings.several_bodies ? particles.data(field::body) : nullptr),
+          records_(particles, table, which) {
+        records_.copy(Places::position, components<D>(particles, field::position));
+        records_.copy(Places::velocity, components<D>(particles, field::predicted_velocity));
+        records_.copy(Places::volume_gradient, components<D>(particles, field::volume_gradient));
+        records_.copy(Places::pressure_gradient, components<D>(particles, field::pressure_gradient));
+        records_.copy(Places::mass, components<1>(particles, field::mass));
+        records_.copy(Places::density, components<1>(particles, field::predicted_density));
+        records_.copy(Places::pressure, components<1>(particles, field::pressure));
+        records_.copy(Places::sound_speed, components<1>(particles, field::sound_speed));
+        if constexpr (Options::strength)
+            records_.copy(Places::stress, components<symmetric_count<D>>(particles, field::predicted_stress));
+        if constexpr (Options::quintic)
+            records_.copy(Places::curvature,
+                          components<symmetric_count<D>>(particles, field::volume_curvature));
+        if constexpr (Options::variable_h)
+            records_.copy(Places::h, components<1>(particles, field::smoothing_length));
+        records_.fill_copies(finish());
+    }
 
     /// Work done on all particles of a cell; returns the number of pairs.
     std::uint64_t visit(const CellEntry& cell, std::span<const Run> runs) {
         std::uint64_t pairs = 0;
         partners_.enter(cell, runs);
+        records_.enter(runs, finish());
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
             if constexpr (Options::variable_h)
                 partners_.find_mutual(i, settings_.force_support());
@@ -70,6 +58,18 @@ class GodunovPass {
   private:
     using Places = GodunovPlaces<D, Options>;
     using Particle = GodunovParticle<Lanes, D, Options>;
+
+    /// Sets what is not copied from a field.
+    auto finish() const {
+        return [gradient = velocity_gradient_, body = body_](std::size_t k, auto& values) {
+            for (int a = 0; a < D; ++a)
+                for (int b = a; b < D; ++b)
+                    values[Places::strain_rate + symmetric_index<D>(a, b)] =
+                        0.5 * (gradient[a * D + b][k] + gradient[b * D + a][k]);
+            values[Places::specific_volume] = 1 / values[Places::density];
+            if constexpr (Options::bodies) values[Places::body] = body ? body[k] : 0;
+        };
+    }
 
     [[gnu::flatten]] void evaluate(std::uint32_t i) {
         const Particle own{broadcast(records_[i])};
@@ -95,6 +95,8 @@ class GodunovPass {
     std::array<double*, D> acceleration_;
     double* power_;
     Partners<D> partners_;
+    std::array<const double*, D * D> velocity_gradient_;
+    const std::uint8_t* body_;  ///< null: all the same
     PairRecords<Places::count> records_;
 };
 

@@ -6,7 +6,7 @@ namespace talus::sph {
 template <int D, class Options>
 void run_with(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
               double time_step, PassCount& count) {
-    GodunovPass<D, Options> pass(particles, settings, time_step);
+    GodunovPass<D, Options> pass(particles, table, which, settings, time_step);
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
         const std::uint64_t pairs = pass.visit(cell, runs);
         count.pairs += pairs;

@@ -19,13 +19,13 @@ struct GradientSums {
 template <int D, class Kernel, bool with_pressure>
 class GradientPass {
   public:
-    GradientPass(ParticleSet& particles, const Kernel& kernel)
+    GradientPass(ParticleSet& particles, const CellTable& table, Cells which, const Kernel& kernel)
         : kernel_(kernel),
           density_(particles.data(field::predicted_density)),
           smoothing_length_(particles.data(field::smoothing_length)),
           velocity_gradient_(components_to_write<D * D>(particles, field::velocity_gradient)),
           partners_(components<D>(particles, field::position), smoothing_length_, kernel.support()),
-          records_(particles.size_with_halo()) {
+          records_(particles, table, which) {
         if constexpr (with_pressure) {
             pressure_gradient_ = components_to_write<D>(particles, field::pressure_gradient);
             volume_gradient_ = components_to_write<D>(particles, field::volume_gradient);
@@ -34,14 +34,12 @@ class GradientPass {
         records_.copy(place_position, components<D>(particles, field::position));
         records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));
         records_.copy(place_mass, components<1>(particles, field::mass));
-        const double* density = density_;
-        records_.fill([density](std::size_t k, auto& values) {
-            values[place_volume] = values[place_mass] / density[k];
-        });
+        records_.fill_copies(finish());
     }
 
     void visit(const CellEntry& cell, std::span<const Run> runs) {
         partners_.enter(cell, runs);
+        records_.enter(runs, finish());
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
             partners_.find(i, kernel_.support());
             store(i, sum_over_partners(i));
@@ -52,6 +50,13 @@ class GradientPass {
     static constexpr std::size_t place_position = 0, place_velocity = D, place_mass = 2 * D,
                                  place_volume = place_mass + 1, place_pressure = place_mass + 2,
                                  record_size = place_pressure + (with_pressure ? 1 : 0);
+
+    /// Sets what is not copied from a field.
+    auto finish() const {
+        return [density = density_](std::size_t k, auto& values) {
+            values[place_volume] = values[place_mass] / density[k];
+        };
+    }
 
     [[gnu::flatten]] GradientSums<double, D> sum_over_partners(std::uint32_t i) const {
         const auto own = broadcast(records_[i]);
@@ -122,7 +127,7 @@ class GradientPass {
 
 template <int D, class Kernel, bool with_pressure>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Kernel& kernel) {
-    GradientPass<D, Kernel, with_pressure> pass(particles, kernel);
+    GradientPass<D, Kernel, with_pressure> pass(particles, table, which, kernel);
     table.for_each_own(which, [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
         pass.visit(cell, runs);
     });

@@ -1,10 +1,15 @@
 #pragma once
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 
+#include "domain/cell_table.hpp"
 #include "domain/lanes.hpp"
+#include "domain/particles.hpp"
 
 namespace talus::sph {
 
@@ -23,37 +28,50 @@ std::array<Lanes, count> broadcast(const PairRecord<count>& record) {
     return lanes;
 }
 
-/// The records of a particle set, own particles and copies.
+/// The records of those particles that the cells being visited can reach: of own particles a window that
+/// moves through the set as cells are visited in order, kept in a ring; of copies all.
 template <std::size_t count>
 class PairRecords {
   public:
-    explicit PairRecords(std::size_t particles)
-        : size_(particles), records_(std::make_unique_for_overwrite<PairRecord<count>[]>(particles)) {}
+    PairRecords(const ParticleSet& particles, const CellTable& table, Cells which)
+        : own_(static_cast<std::uint32_t>(particles.size())) {
+        std::uint32_t longest = 1;
+        bool any = false;
+        table.for_each_own(which, [&](const CellEntry&, std::span<const Run> runs, std::size_t) {
+            const Run window = own_window(runs);
+            longest = std::max(longest, window.end - window.begin);
+            any = true;
+        });
+        ring_ = std::bit_ceil(longest);
+        copies_ = any && which != Cells::interior ? particles.halo_size() : 0;
+        records_ = std::make_unique_for_overwrite<PairRecord<count>[]>(ring_ + copies_);
+    }
 
     /// Values from `place` on are copied from these component arrays.
     template <std::size_t components>
     void copy(std::size_t place, const std::array<const double*, components>& from) {
         for (std::size_t c = 0; c < components; ++c) columns_[place + c] = from[c];
     }
-    /// Fills all records; finish(k, values) sets what is not copied.
+    /// Fills the records of the copies; finish(k, values) sets what is not copied.
     template <class Finish>
-    void fill(Finish&& finish) {
-        for (std::size_t k = 0; k < size_; ++k) {
-            auto& values = records_[k].values;
-            for (std::size_t c = 0; c < count; ++c)
-                if (columns_[c]) values[c] = columns_[c][k];
-            finish(k, values);
-        }
+    void fill_copies(Finish&& finish) {
+        for (std::size_t k = own_; k < own_ + copies_; ++k) fill(static_cast<std::uint32_t>(k), finish);
+    }
+    /// Moves the window on to a cell with these runs. Cells must come in their order.
+    template <class Finish>
+    void enter(std::span<const Run> runs, Finish&& finish) {
+        const Run window = own_window(runs);
+        for (std::uint32_t k = std::max(filled_, window.begin); k < window.end; ++k) fill(k, finish);
+        filled_ = std::max(filled_, window.end);
     }
 
-    const PairRecord<count>& operator[](std::size_t k) const { return records_[k]; }
+    const PairRecord<count>& operator[](std::uint32_t k) const { return records_[slot(k)]; }
 
     /// The records of four particles, one in each lane.
     std::array<Lanes, count> gather(const std::uint32_t* index) const {
         std::array<Lanes, count> lanes;
         std::array<const double*, lane_count> from;
-        for (std::size_t lane = 0; lane < lane_count; ++lane)
-            from[lane] = records_[index[lane]].values.data();
+        for (std::size_t lane = 0; lane < lane_count; ++lane) from[lane] = (*this)[index[lane]].values.data();
         const auto two = [&](std::size_t c) {
             load_two({from[0] + c, from[1] + c, from[2] + c, from[3] + c}, lanes[c], lanes[c + 1]);
         };
@@ -65,8 +83,29 @@ class PairRecords {
     }
 
   private:
+    /// From the first to behind the last own particle in the runs.
+    Run own_window(std::span<const Run> runs) const {
+        Run window{own_, 0};
+        for (const Run& run : runs) {
+            if (run.begin >= own_) continue;
+            window.begin = std::min(window.begin, run.begin);
+            window.end = std::max(window.end, std::min(run.end, own_));
+        }
+        return window;
+    }
+    std::size_t slot(std::uint32_t k) const { return k < own_ ? k & (ring_ - 1) : ring_ + (k - own_); }
+
+    template <class Finish>
+    void fill(std::uint32_t k, Finish& finish) {
+        auto& values = records_[slot(k)].values;
+        for (std::size_t c = 0; c < count; ++c)
+            if (columns_[c]) values[c] = columns_[c][k];
+        finish(k, values);
+    }
+
     std::array<const double*, count> columns_{};
-    std::size_t size_;
+    std::uint32_t own_, ring_ = 1, filled_ = 0;
+    std::size_t copies_ = 0;
     std::unique_ptr<PairRecord<count>[]> records_;
 };
 
