@@ -13,7 +13,7 @@
 namespace talus {
 
 namespace {
-constexpr int cells_per_radius = 2;
+constexpr int cells_per_radius = 1;
 
 bool has_strength(const Setup& setup) {
     return std::any_of(setup.materials.begin(), setup.materials.end(),

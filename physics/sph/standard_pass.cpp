@@ -15,7 +15,8 @@ class StandardPass {
           position_(components<D>(particles, field::position)),
           velocity_(components<D>(particles, field::predicted_velocity)),
           acceleration_(components_to_write<D>(particles, field::acceleration)),
-          power_(particles.data(field::specific_power)) {
+          power_(particles.data(field::specific_power)),
+          partners_(position_, particles.data(field::smoothing_length), kernel.support()) {
         scalars_ = {particles.data(field::mass), particles.data(field::predicted_density),
                     particles.data(field::pressure), particles.data(field::sound_speed),
                     particles.data(field::smoothing_length)};
@@ -24,13 +25,9 @@ class StandardPass {
 
     std::uint64_t visit(const CellEntry& cell, std::span<const Run> runs) {
         std::uint64_t pairs = 0;
+        partners_.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            const double* h = scalars_[smoothing_length];
-            const double support = kernel_.support(), h_i = h[i];
-            partners_.find(position_, i, runs, [=](std::uint32_t k) {
-                const double larger = support * std::max(h_i, h[k]);
-                return larger * larger;
-            });
+            partners_.find_mutual(i, kernel_.support());
             x_.gather(partners_, position_);
             v_.gather(partners_, velocity_);
             values_.gather(partners_, scalars_);
