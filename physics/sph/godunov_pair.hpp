@@ -116,8 +116,8 @@ GodunovForce<Real, D> godunov_pair(const GodunovParticle<Real, D, Options>& i,
 
     // Riemann problem between states reconstructed at s*, centred in time.
     const Vector<Real, D> v_i = i.vector(P::velocity), v_j = j.vector(P::velocity);
-    const Real u_i = dot(v_i, e), u_j = dot(v_j, e), mean_velocity = share_i * u_i + share_j * u_j;
-    Real star_pressure = 0.5 * (pressure_i + pressure_j), star_velocity = mean_velocity;
+    const Real u_i = dot(v_i, e), u_j = dot(v_j, e);
+    Real star_pressure = 0.5 * (pressure_i + pressure_j), velocity_change = 0;
     if (settings.riemann) {
         const Real c_i = i.scalar(P::sound_speed), c_j = j.scalar(P::sound_speed);
         RiemannSide<Real> right{i.scalar(P::density), pressure_i, u_i, c_i};
@@ -141,25 +141,29 @@ GodunovForce<Real, D> godunov_pair(const GodunovParticle<Real, D, Options>& i,
         const RiemannSolution<Real> star = solve_riemann(left, right, settings.shock_slope);
         const auto false_tension = star.pressure < 0 && pressure_i > 0 && pressure_j > 0;
         star_pressure = select(false_tension, star_pressure, star.pressure);
-        if (settings.riemann_velocity) star_velocity = star.velocity;
+        if (settings.riemann_velocity) velocity_change = star.velocity - (share_i * u_i + share_j * u_j);
     }
 
     // Traction on i and its work at the velocity between the particles.
-    Real keep_stress_i = share_i, keep_stress_j = share_j;
+    Real keep_i = share_i, keep_j = share_j;  // of either side's stress
     if constexpr (Options::bodies) {
         const auto contact = i.scalar(P::body) != j.scalar(P::body);
         star_pressure = select(contact, max(star_pressure, Real(0.0)), star_pressure);
-        keep_stress_i = select(contact, Real(0.0), share_i);
-        keep_stress_j = select(contact, Real(0.0), share_j);
+        keep_i = select(contact, Real(0.0), share_i);
+        keep_j = select(contact, Real(0.0), share_j);
+    }
+    Symmetric<Real, D> stress;
+    if constexpr (Options::strength) {
+        const Symmetric<Real, D> s_i = i.symmetric(P::stress), s_j = j.symmetric(P::stress);
+        for (std::size_t c = 0; c < s_i.size(); ++c) stress[c] = keep_i * s_i[c] + keep_j * s_j[c];
     }
     GodunovForce<Real, D> result;
     result.power = 0;
     for (std::size_t a = 0; a < D; ++a) {
         Real traction = -star_pressure * r[a];
-        if constexpr (Options::strength)
-            traction += keep_stress_i * row_times(i.symmetric(P::stress), a, r) +
-                        keep_stress_j * row_times(j.symmetric(P::stress), a, r);
-        const Real star = share_i * v_i[a] + share_j * v_j[a] + (star_velocity - mean_velocity) * e[a];
+        if constexpr (Options::strength) traction += row_times(stress, a, r);
+        Real star = share_i * v_i[a] + share_j * v_j[a];
+        if (settings.riemann_velocity) star += velocity_change * e[a];
         result.force[a] = weight * traction;
         result.power += result.force[a] * star;
     }
