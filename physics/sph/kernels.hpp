@@ -7,8 +7,8 @@
 
 namespace talus::sph {
 
-/// exp(-x) for 0 <= x <= 10 to 1e-14, of additions and multiplications alone so that lanes can share it:
-/// a polynomial for exp(-x/32), squared five times.
+/// exp(-x) for 0 <= x <= 10 to 1e-14 (1e-11 up to 16), of additions and multiplications alone so that lanes
+/// can share it: a polynomial for exp(-x/32), squared five times.
 template <class Real>
 Real exp_minus(Real x) {
     constexpr double centre = 0.15625;
@@ -63,15 +63,18 @@ struct Gaussian {
     Real value(Real r2, Real inverse_h) const {
         Real scale = norm * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
-        return scale * (exp_minus(std::min(r2 * inverse_h * inverse_h, cutoff * cutoff)) - edge);
+        using std::min;
+        const Real x = min(r2 * inverse_h * inverse_h, Real(cutoff * cutoff));
+        return scale * (exp_minus(x) - edge);
     }
     template <class Real>
     Real factor(Real r2, Real inverse_h) const {
         const Real inverse_h2 = inverse_h * inverse_h;
         Real scale = -2 * norm * inverse_h2 * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
-        const double x = r2 * inverse_h2, end = cutoff * cutoff;
-        return x < end ? scale * exp_minus(std::min(x, end)) : 0.0;
+        using std::min;
+        const Real x = r2 * inverse_h2, end = Real(cutoff * cutoff);
+        return select(x < end, scale * exp_minus(min(x, end)), Real(0.0));
     }
 
     double cutoff, edge, norm;

@@ -35,11 +35,12 @@ class PairRecords {
   public:
     PairRecords(const ParticleSet& particles, const CellTable& table, Cells which)
         : own_(static_cast<std::uint32_t>(particles.size())) {
-        std::uint32_t longest = 1;
+        std::uint32_t longest = 1, filled = 0;  // windows do not begin in order: a row of cells may be missing
         bool any = false;
         table.for_each_own(which, [&](const CellEntry&, std::span<const Run> runs, std::size_t) {
             const Run window = own_window(runs);
-            longest = std::max(longest, window.end - window.begin);
+            filled = std::max(filled, window.end);
+            if (window.begin < window.end) longest = std::max(longest, filled - window.begin);
             any = true;
         });
         ring_ = std::bit_ceil(longest);
@@ -61,8 +62,7 @@ class PairRecords {
     template <class Finish>
     void enter(std::span<const Run> runs, Finish&& finish) {
         const Run window = own_window(runs);
-        for (std::uint32_t k = std::max(filled_, window.begin); k < window.end; ++k) fill(k, finish);
-        filled_ = std::max(filled_, window.end);
+        for (; filled_ < window.end; ++filled_) fill(filled_, finish);
     }
 
     const PairRecord<count>& operator[](std::uint32_t k) const { return records_[slot(k)]; }
