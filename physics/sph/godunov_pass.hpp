@@ -61,7 +61,8 @@ class GodunovPass {
 
     /// Sets what is not copied from a field.
     auto finish() const {
-        return [gradient = velocity_gradient_, body = body_](std::size_t k, auto& values) {
+        return [gradient = velocity_gradient_, bodies = body_](std::size_t k, auto& values) {
+            [[maybe_unused]] const std::uint8_t* body = bodies;
             for (int a = 0; a < D; ++a)
                 for (int b = a; b < D; ++b)
                     values[Places::strain_rate + symmetric_index<D>(a, b)] =

@@ -43,7 +43,9 @@ class StandardPass {
 
     void evaluate(std::uint32_t i) {
         const std::size_t n = partners_.count();
-        const auto x = x_.data(), v = v_.data(), values = values_.data(), s = stresses_.data();
+        const auto x = x_.data(), v = v_.data();
+        const auto values = values_.data();
+        const auto s = stresses_.data();
         const Kernel kernel = kernel_;
         const double alpha = settings_.viscosity_alpha, beta = settings_.viscosity_beta;
         const double support2 = kernel.support() * kernel.support();

@@ -22,7 +22,7 @@ struct SampleChoice {
 /// through it, arranged for pair loops on the ranks of MPI_COMM_WORLD.
 class SphSample {
   public:
-    explicit SphSample(const SampleChoice& choice, int cells_per_radius = 2)
+    explicit SphSample(const SampleChoice& choice, int cells_per_radius = 1)
         : comm(MPI_COMM_WORLD),
           particles("rock", choice.dimension),
           decomposition(comm, PartitionMethod::slabs) {

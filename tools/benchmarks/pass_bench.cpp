@@ -49,7 +49,7 @@ std::uint64_t search(const test::SphSample& sample, double range) {
 int main(int argc, char** argv) {
     const Environment environment(argc, argv);
     const auto argument = [&](int k, int otherwise) { return argc > k ? std::atoi(argv[k]) : otherwise; };
-    test::SphSample sample({.side = argument(1, 37), .bodies = true}, argument(3, 2));
+    test::SphSample sample({.side = argument(1, 37), .bodies = true}, argument(3, 1));
     const auto n = static_cast<double>(sample.particles.size());
 
     struct Part {
