@@ -58,12 +58,14 @@ void for_each_particle(const Spread& spread, double radius, Visit&& visit) {
     std::array<const double*, D> position;
     for (int d = 0; d < D; ++d)
         position[static_cast<std::size_t>(d)] = spread.particles.data(field::position, d);
-    Partners<D> partners;
+    const std::vector<double> radii(spread.particles.size_with_halo(), radius);
+    Partners<D> partners(position, radii.data(), 1);
     for (const Cells which : {Cells::interior, Cells::boundary})
         spread.decomposition.table().for_each_own(
             which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+                partners.enter(cell, runs);
                 for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-                    partners.find(position, i, runs, [=](std::uint32_t) { return radius * radius; });
+                    partners.find(i, 1);
                     visit(i, partners.index());
                 }
             });

@@ -77,13 +77,15 @@ Lists partner_lists(const Cloud& cloud, const Stored& stored, Cells which) {
         position[d] = x[d].data();
     }
     Lists lists(stored.id.size());
-    Partners<D> partners;
+    const std::vector<double> radius(stored.id.size(), cloud.radius);
+    Partners<D> partners(position, radius.data(), 1);
     std::size_t before = 0, visits = 0;
     stored.table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
         EXPECT_TRUE(visits++ == 0 || k > before);
         before = k;
+        partners.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            partners.find(position, i, runs, [&](std::uint32_t) { return cloud.radius * cloud.radius; });
+            partners.find(i, 1);
             EXPECT_EQ(partners.index().size(), partners.count());
             for (const std::uint32_t j : partners.index()) lists[stored.id[i]].push_back(stored.id[j]);
         }
@@ -167,27 +169,31 @@ TEST(Partners, OneRadiusForEachParticle) {
     // 0 - 1 - 2 in a line, 1 apart; radii 0.5, 1.5, 2.5.
     const std::vector<double> x{0, 1, 2}, radius{0.5, 1.5, 2.5};
     const std::vector<talus::Run> runs{{0, 1}, {1, 3}};
-    Partners<1> partners;
+    const auto in_own_cell = [](std::uint32_t i) { return CellEntry{i, i, i + 1, false, false}; };
+    Partners<1> partners({x.data()}, radius.data(), 1);
     const auto mutual = [&](std::uint32_t i) {
-        partners.find({x.data()}, i, runs, [&](std::uint32_t k) {
-            const double larger = std::max(radius[i], radius[k]);
-            return larger * larger;
-        });
+        partners.enter(in_own_cell(i), runs);
+        partners.find_mutual(i, 1);
         return std::vector<std::uint32_t>(partners.index().begin(), partners.index().end());
     };
     EXPECT_EQ(mutual(0), (std::vector<std::uint32_t>{1, 2}));
     EXPECT_EQ(mutual(1), (std::vector<std::uint32_t>{0, 2}));
     EXPECT_EQ(mutual(2), (std::vector<std::uint32_t>{0, 1}));
-    partners.find({x.data()}, 1, runs, [](std::uint32_t) { return 1.0; });
-    EXPECT_EQ(partners.count(), 0u) << "a distance equal to the radius is outside";
+    const std::vector<double> one{1, 1, 1};
+    Partners<1> exact({x.data()}, one.data(), 1);
+    exact.enter(in_own_cell(1), runs);
+    exact.find(1, 1);
+    EXPECT_EQ(exact.count(), 0u) << "a distance equal to the radius is outside";
 }
 
 TEST(Partners, GatherCopiesTheirValues) {
     const std::vector<double> x{0, 0.1, 0.2, 5, 0.3};
     const std::vector<std::uint8_t> body{4, 5, 6, 7, 8};
     const std::vector<talus::Run> runs{{0, 5}};
-    Partners<1> partners;
-    partners.find({x.data()}, 1, runs, [](std::uint32_t) { return 1.0; });
+    const std::vector<double> radius(5, 1.0);
+    Partners<1> partners({x.data()}, radius.data(), 1);
+    partners.enter({0, 0, 5, false, false}, runs);
+    partners.find(1, 1);
     AlignedValues positions, bodies;
     partners.gather(x.data(), positions);
     partners.gather(body.data(), bodies);
