@@ -47,7 +47,7 @@ void expect_in_place(const Communicator& comm, const CellGrid& grid, const Parti
         ASSERT_LT(cell.begin, cell.end);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) ASSERT_EQ(key_at(grid, particles, i), cell.key);
         next = cell.end;
-        blocks.insert(block_key_of(cell_of(cell.key), 2));
+        blocks.insert(block_key_of(cell_of(cell.key), 1));
     }
     ASSERT_EQ(next, particles.size());
     const std::vector<std::uint64_t> mine(blocks.begin(), blocks.end());

@@ -75,6 +75,7 @@ class Reference {
 
   private:
     Vector3d grad_w(const Vector3d& r, double h) const {
+        if (r.norm() >= settings_.cutoff * h) return 0 * r;  // of the pair, the narrower kernel may have ended
         return -2 * norm_ / std::pow(h, D_ + 2) * std::exp(-r.squaredNorm() / (h * h)) * r;
     }
 
