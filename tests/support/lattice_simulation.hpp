@@ -22,6 +22,7 @@ struct LatticeCase {
     sph::Interpolation compressed = sph::Interpolation::linear, stretched = sph::Interpolation::linear;
     double cutoff = 3.05;  ///< no shell of a cubic lattice lies at it, nor at sqrt2 of it
     sph::DensityMethod density = sph::DensityMethod::continuity;
+    bool riemann = false;  ///< false: no dissipation
     double courant = 0.1;
 };
 
@@ -29,21 +30,23 @@ struct LatticeCase {
 struct LatticeState {
     double density;       ///< that particles see
     double kernel_scale;  ///< of the program's kernel, on that of the relations for this density
+    double moment;  ///< sum V x_i x_i grad W, 1 but for the discretisation, which corrected gradients undo
 };
 
 template <int D>
 LatticeState lattice_state_in(const LatticeCase& lattice) {
     const sph::Gaussian<D> kernel(lattice.cutoff);
-    double density = 1;
-    if (lattice.density == sph::DensityMethod::summation) {
-        density = 0;
-        const int n = static_cast<int>(lattice.cutoff) + 1, ny = D > 1 ? n : 0, nz = D > 2 ? n : 0;
-        for (int a = -n; a <= n; ++a)
-            for (int b = -ny; b <= ny; ++b)
-                for (int c = -nz; c <= nz; ++c)
-                    density += std::max(kernel.value(a * a + b * b + c * c, 1), 0.0);
-    }
-    return {density, kernel.norm * std::pow(std::numbers::pi, 0.5 * D) / density};
+    const int n = static_cast<int>(lattice.cutoff) + 1, ny = D > 1 ? n : 0, nz = D > 2 ? n : 0;
+    double density = 0, moment = 0;
+    for (int a = -n; a <= n; ++a)
+        for (int b = -ny; b <= ny; ++b)
+            for (int c = -nz; c <= nz; ++c) {
+                const double r2 = a * a + b * b + c * c;
+                density += std::max(kernel.value(r2, 1), 0.0);
+                moment -= a * a * kernel.factor(r2, 1);
+            }
+    if (lattice.density == sph::DensityMethod::continuity) density = 1;
+    return {density, kernel.norm * std::pow(std::numbers::pi, 0.5 * D) / density, moment};
 }
 inline LatticeState lattice_state(const LatticeCase& lattice) {
     if (lattice.dimension == 1) return lattice_state_in<1>(lattice);
@@ -51,19 +54,26 @@ inline LatticeState lattice_state(const LatticeCase& lattice) {
     return lattice_state_in<3>(lattice);
 }
 
-/// omega^2 of a longitudinal wave along x, cubic lattice.
+/// omega^2 of a longitudinal wave along x, cubic lattice. By continuity the density follows the corrected
+/// velocity gradient, which is 1/moment times the raw kernel sum of the relations: a factor on their D where
+/// it stands for the density, in -c^2 D a and 2 (P/rho) D a.
 inline double omega_squared(const LatticeCase& lattice, double wavenumber) {
     const LatticeState state = lattice_state(lattice);
-    const reference::LatticeWave wave{.dimension = lattice.dimension,
-                                      .density = state.density,
-                                      .pressure = lattice.pressure * state.density,
-                                      .cutoff = lattice.cutoff,
-                                      .gradient_scale = state.kernel_scale};
+    reference::LatticeWave wave{.dimension = lattice.dimension,
+                                .density = state.density,
+                                .pressure = lattice.pressure * state.density,
+                                .cutoff = lattice.cutoff,
+                                .gradient_scale = state.kernel_scale};
     const sph::Interpolation used = lattice.pressure > 0 ? lattice.compressed : lattice.stretched;
-    return reference::godunov_omega_squared(wave, static_cast<reference::Interpolation>(used), wavenumber);
+    const auto kind = static_cast<reference::Interpolation>(used);
+    const double raw = reference::godunov_omega_squared(wave, kind, wavenumber);
+    if (lattice.density == sph::DensityMethod::summation) return raw;
+    wave.pressure = 0;
+    const double unloaded = reference::godunov_omega_squared(wave, kind, wavenumber);
+    return raw + (1 / state.moment - 1) * (1 - 2 * lattice.pressure) * unloaded;
 }
 
-/// A simulation of a lattice, each particle moved off its site and given a velocity; without dissipation.
+/// A simulation of a lattice, each particle moved off its site and given a velocity.
 class LatticeSimulation {
   public:
     using Field = std::function<Point(std::uint64_t id, const Point& site)>;
@@ -88,22 +98,32 @@ class LatticeSimulation {
         return project(
             k, [this](std::size_t i, const Point&) { return run_.particles().own(field::acceleration)[i]; });
     }
-    /// Root of the mean square distance from the sites.
-    double distance_from_sites() const {
-        const ParticleSet& particles = run_.particles();
-        double sum = 0;
-        for (std::size_t i = 0; i < particles.size(); ++i)
-            for (int axis = 0; axis < lattice_.dimension; ++axis) {
-                const auto a = static_cast<std::size_t>(axis);
-                const double d = particles.data(field::position, axis)[i] - site_of(i)[a];
-                const double nearest = d - lattice_.size[a] * std::round(d / lattice_.size[a]);
-                sum += nearest * nearest;
-            }
-        return std::sqrt(total(sum) / static_cast<double>(sites_.size()));
+    /// Least distance between two sites and between two particles, over the periodic box. By one rank alone.
+    double closest_sites() const { return closest(sites_); }
+    double closest_pair() const {
+        std::vector<Point> positions(run_.particles().size());
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            for (int axis = 0; axis < lattice_.dimension; ++axis)
+                positions[i][static_cast<std::size_t>(axis)] = run_.particles().own(field::position, axis)[i];
+        return closest(positions);
     }
 
   private:
     const Point& site_of(std::size_t i) const { return sites_[run_.particles().data(field::id)[i]]; }
+    double closest(const std::vector<Point>& points) const {
+        double least = 1e300;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                double r2 = 0;
+                for (std::size_t a = 0; a < static_cast<std::size_t>(lattice_.dimension); ++a) {
+                    const double d = points[i][a] - points[j][a];
+                    const double nearest = d - lattice_.size[a] * std::round(d / lattice_.size[a]);
+                    r2 += nearest * nearest;
+                }
+                least = std::min(least, r2);
+            }
+        return std::sqrt(least);
+    }
     double total(double share) const {
         double sum = 0;
         for (const double part : comm_.all_gather(std::span<const double>(&share, 1))) sum += part;
@@ -133,7 +153,7 @@ class LatticeSimulation {
         setup.sph.compressed = lattice_.compressed;
         setup.sph.stretched = lattice_.stretched;
         setup.sph.density = lattice_.density;
-        setup.sph.riemann = false;
+        setup.sph.riemann = lattice_.riemann;
         setup.sph.courant = lattice_.courant;
         setup.materials = {
             {.name = "linear",
