@@ -110,7 +110,8 @@ inline constexpr Field<double> deviatoric_stress{
     symmetric_tensor,
     state,
     owner,
-    "deviatoric stress; in 1D and 2D the missing diagonal makes it traceless (uniaxial, plane strain)"};
+    "deviatoric stress of the uncracked part; in 1D and 2D the missing diagonal makes it traceless "
+    "(uniaxial, plane strain)"};
 inline constexpr Field<double> damage{"damage", "1",   scalar,
                                       state,    owner, "Grady-Kipp damage D: 0 intact, 1 fully cracked"};
 inline constexpr Field<std::uint8_t> body{
@@ -162,7 +163,7 @@ inline constexpr Field<double> predicted_stress{
     symmetric_tensor,
     work,
     halo,
-    "deviatoric stress predicted to the time of evaluation, within the strength"};
+    "deviatoric stress predicted to the time of evaluation, within the strength, reduced by damage"};
 inline constexpr Field<double> pressure_gradient{"pressure_gradient",       "Pa m-1", vector, work, halo,
                                                  "gradient of the pressure"};
 inline constexpr Field<double> volume_gradient{

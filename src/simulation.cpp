@@ -187,7 +187,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
 }
 
 /// Pressure and sound speed, the limit of strength, growth of damage over `damage_time`, and what damage
-/// leaves of tension.
+/// leaves of tension and shear.
 void Simulation::material_response(double damage_time) {
     damage_limit_ = std::numeric_limits<double>::infinity();
     const auto bodies = std::as_const(particles_).own(field::body);
@@ -219,10 +219,9 @@ void Simulation::material_response(double damage_time) {
         grow_damage(growth, state, damage_time, particles_.own(field::damage), bodies, body);
         damage_limit_ = std::min(
             damage_limit_, damage_time_step(growth, state, setup_.largest_damage_step, damage, bodies, body));
+        relieve_stress(material.strength, damage, pressure,
+                       stress_columns(particles_, field::predicted_stress), bodies, body);
     }
-    if (!cracks) return;
-    for (std::size_t i = 0; i < particles_.size(); ++i)
-        if (pressure[i] < 0) pressure[i] *= 1 - damage[i];
 }
 
 void Simulation::hold_bodies() {
