@@ -29,7 +29,7 @@ class Recorder {
     void after_step(Simulation& simulation);
     /// Writes a checkpoint because of `why`.
     void stop_early(Simulation& simulation, const std::string& why);
-    /// Writes the last state and prints the table of time per phase.
+    /// Writes the last state and what the scene wants to know of it; prints the table of time per phase.
     void finish(Simulation& simulation);
 
     /// Where to go on from after a failure, for messages.
@@ -42,6 +42,7 @@ class Recorder {
 
     void write_checkpoint_now(Simulation& simulation);
     void write_snapshot_now(Simulation& simulation, int index);
+    void write_analysis(const Simulation& simulation);
     void write_diagnostics(Simulation& simulation);
     void print_summary(Simulation& simulation);
 
