@@ -170,6 +170,8 @@ inline constexpr Field<double> volume_gradient{
     "volume_gradient", "m2 kg-1", vector, work, halo, "gradient of the specific volume, raw kernel sum"};
 inline constexpr Field<double> volume_curvature{
     "volume_curvature", "m kg-1", symmetric_tensor, work, halo, "second derivatives of the specific volume"};
+inline constexpr Field<std::uint64_t> fragment{
+    "fragment", "1", scalar, work, halo, "smallest id of the particles that hold together with this one"};
 }  // namespace field
 
 }  // namespace talus

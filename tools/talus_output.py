@@ -129,6 +129,21 @@ def read_diagnostics(folder):
     return {name: (unit, table[:, i]) for i, (name, unit) in enumerate(columns)}
 
 
+def read_fragments(folder):
+    """(mass fractions of the fragments, the largest first; fully damaged fraction or None) of an analysed run;
+    None if there is no fragments.csv or it is empty."""
+    path = Path(folder) / "fragments.csv"
+    if not path.is_file():
+        return None
+    with open(path, newline="", encoding="utf-8") as file:
+        fractions = np.array([float(row["mass_fraction"]) for row in csv.DictReader(file)])
+    if not len(fractions):
+        return None
+    figures = path.with_name("analysis.json")
+    damaged = json.loads(figures.read_text(encoding="utf-8")) if figures.is_file() else {}
+    return np.sort(fractions)[::-1], damaged.get("fully_damaged_fraction")
+
+
 def to_numbers(row):
     def number(text):
         try:

@@ -34,14 +34,16 @@ struct CommandLine {
     std::string until, walltime;
     std::filesystem::path file;
     CLI::App app{"Talus: particles of rock, soil, grains and water, on any number of MPI ranks", "talus"};
-    CLI::App *run_command, *check_command, *info_command, *hash_command;
+    CLI::App *run_command, *check_command, *analyse_command, *info_command, *hash_command;
 
     CommandLine() {
         app.set_version_flag("--version", std::string("talus ") + TALUS_VERSION);
         app.require_subcommand(1);
         run_command = app.add_subcommand("run", "Run a scene");
         check_command = app.add_subcommand("check", "Read and validate a scene; say what it would cost");
-        for (CLI::App* command : {run_command, check_command}) {
+        analyse_command =
+            app.add_subcommand("analyse", "Find the fragments in the newest checkpoint of a scene's run");
+        for (CLI::App* command : {run_command, check_command, analyse_command}) {
             command->add_option("scene", run.scene, "TOML file, or folder with a scene.toml")->required();
             command->add_flag("--quick", run.quick, "Use the scene's [quick] values: ends in seconds");
             command->add_option("--set", run.overrides, "Override a key: --set body[0].radius='2 cm'")
@@ -50,9 +52,11 @@ struct CommandLine {
         }
         run_command->add_option("--steps", run.steps, "Stop after this many steps in all");
         run_command->add_option("--until", until, "Stop at this time: seconds, or a number with a unit");
-        run_command->add_option("--out", run.out, "Folder for results (default out/<scene>)");
-        run_command->add_option("--restart", run.restart,
-                                "Go on from a checkpoint: a file, a folder or 'latest'");
+        for (CLI::App* command : {run_command, analyse_command}) {
+            command->add_option("--out", run.out, "Folder for results (default out/<scene>)");
+            command->add_option("--restart", run.restart,
+                                "Start from a checkpoint: a file, a folder or 'latest'");
+        }
         run_command
             ->add_option("--walltime", walltime, "Write a checkpoint and stop before this much wall time")
             ->type_name("HH:MM:SS");
@@ -79,6 +83,7 @@ struct CommandLine {
 int dispatch(const Communicator& comm, const CommandLine& line) {
     if (line.run_command->parsed()) return run_scene(comm, line.run);
     if (line.check_command->parsed()) return check_scene(comm, line.run);
+    if (line.analyse_command->parsed()) return analyse_checkpoint(comm, line.run);
     if (!comm.is_root()) return exit_done;
     fmt::print("{}\n", line.info_command->parsed() ? describe_file(line.file) : hash_file(line.file));
     return exit_done;

@@ -20,4 +20,11 @@ Scene load_scene(const Communicator& comm, const RunOptions& options) {
     return Scene::parse(read_shared_text(comm, file), file, options.quick, options.overrides);
 }
 
+std::filesystem::path output_folder(const Scene& scene, const RunOptions& options) {
+    if (!options.out.empty()) return options.out;
+    const std::filesystem::path file = std::filesystem::absolute(scene.file());
+    const bool in_folder = file.filename() == "scene.toml";
+    return std::filesystem::path("out") / (in_folder ? file.parent_path().filename() : file.stem());
+}
+
 }  // namespace talus

@@ -178,6 +178,7 @@ void Recorder::finish(Simulation& simulation) {
     write_checkpoint_now(simulation);
     if (setup_.output.snapshot_interval <= 0 && simulation.step_count() > 0)
         write_snapshot_now(simulation, 1);
+    write_analysis(simulation);
     print_summary(simulation);
 }
 
@@ -212,6 +213,14 @@ void Recorder::write_snapshot_now(Simulation& simulation, int index) {
                       .name = snapshot_name(field::density)});
     write_snapshot(comm_, folder_, static_cast<std::uint64_t>(index), run_state(simulation, scene_),
                    particles, fields);
+}
+
+void Recorder::write_analysis(const Simulation& simulation) {
+    const AnalysisPlan& plan = setup_.analysis;
+    if (!plan.fragments) return;
+    const Breakup breakup = analyse(comm_, plan, setup_.simulation.box, simulation.particles());
+    write_breakup(comm_, folder_, simulation.time(), plan, breakup);
+    if (comm_.is_root()) files_->log->info("{}", describe(breakup));
 }
 
 void Recorder::write_diagnostics(Simulation& simulation) {

@@ -29,7 +29,7 @@ class Recorder {
     void after_step(Simulation& simulation);
     /// Writes a checkpoint because of `why`.
     void stop_early(Simulation& simulation, const std::string& why);
-    /// Writes the last state and prints the table of time per phase.
+    /// Writes the last state and what the scene wants to know of it; prints the table of time per phase.
     void finish(Simulation& simulation);
 
     /// After a failure of step(): keeps the state that failed in `folder`/failed for a look with `talus
@@ -43,6 +43,7 @@ class Recorder {
 
     void write_checkpoint_now(Simulation& simulation);
     void write_snapshot_now(Simulation& simulation, int index);
+    void write_analysis(const Simulation& simulation);
     void write_diagnostics(Simulation& simulation);
     void print_summary(Simulation& simulation);
     void write_performance(const Simulation& simulation, const class PhaseTimer& timer, double seconds,

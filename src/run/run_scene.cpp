@@ -9,13 +9,6 @@ namespace talus {
 
 namespace {
 
-std::filesystem::path output_folder(const Scene& scene, const RunOptions& options) {
-    if (!options.out.empty()) return options.out;
-    const std::filesystem::path file = std::filesystem::absolute(scene.file());
-    const bool in_folder = file.filename() == "scene.toml";
-    return std::filesystem::path("out") / (in_folder ? file.parent_path().filename() : file.stem());
-}
-
 bool finished(const Simulation& simulation, double end_time, const RunOptions& options) {
     if (options.steps && simulation.step_count() >= *options.steps) return true;
     return simulation.time() >= end_time;

@@ -176,6 +176,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.output.snapshot_interval = output.number("snapshots", "s", 0.0, not_negative);
     setup.output.diagnostics_interval = output.number("diagnostics", "s", 0.0, not_negative);
     setup.output.checkpoint_interval = output.number("checkpoints", "s", 1800.0, not_negative);
+    setup.analysis = read_analysis(root.section("analysis"), setup.bodies, setup.simulation);
     scene.finish();
     return setup;
 }

@@ -4,6 +4,7 @@
 
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
+#include "src/analysis/analysis.hpp"
 #include "src/setup/bodies.hpp"
 #include "src/simulation.hpp"
 
@@ -24,6 +25,7 @@ struct SceneSetup {
     Setup simulation;
     std::vector<Body> bodies;
     OutputPlan output;
+    AnalysisPlan analysis;
     std::uint64_t seed = 0;
 };
 

@@ -134,6 +134,17 @@ class Plot(unittest.TestCase):
         write_diagnostics(self.folder, ["time [s]", "kinetic_energy [J]"], [[0, 1], [0.1, 2], [0.05, 1.4]])
         self.assertEqual(self.plot(), {"gas_profiles.png", "energies.png"})
 
+    def test_fragments(self):
+        (self.folder / "fragments.csv").write_text(
+            "rank,label,mass [kg],mass_fraction\n1,0,0.09,0.3\n2,17,0.006,0.02\n3,5,0.006,0.02\n")
+        self.assertEqual(self.plot(), {"fragments.png"})
+        (self.folder / "analysis.json").write_text('{"fully_damaged_fraction": 0.6}')
+        self.assertEqual(self.plot(), {"fragments.png"})
+
+    def test_no_fragments(self):
+        (self.folder / "fragments.csv").write_text("rank,label,mass [kg],mass_fraction\n")
+        self.plot(code=1)
+
     def test_empty_folder_is_an_error(self):
         self.plot(code=1)
 
