@@ -40,6 +40,7 @@ void add_fields(ParticleSet& particles, const Setup& setup) {
         particles.add(field::pressure_gradient);
         particles.add(field::volume_gradient);
     }
+    if (sph.formulation == sph::Formulation::standard) particles.add(field::viscous_speed);
     if (sph.uses(sph::Interpolation::quintic)) particles.add(field::volume_curvature);
     if (has_strength(setup)) {
         particles.add(field::deviatoric_stress);
