@@ -132,6 +132,9 @@ inline constexpr Field<double> specific_power{
     state,
     owner,
     "work of the pair forces on the particle per mass and time, kinetic and internal together"};
+inline constexpr Field<double> viscous_speed{
+    "viscous_speed", "m s-1", scalar, work, owner,
+    "greatest sensitivity of the artificial viscosity to the velocity difference over all partners"};
 inline constexpr Field<double> velocity_gradient{
     "velocity_gradient",
     "s-1",

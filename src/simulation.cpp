@@ -40,6 +40,7 @@ void add_fields(ParticleSet& particles, const Setup& setup) {
         particles.add(field::pressure_gradient);
         particles.add(field::volume_gradient);
     }
+    if (sph.formulation == sph::Formulation::standard) particles.add(field::viscous_speed);
     if (sph.uses(sph::Interpolation::quintic)) particles.add(field::volume_curvature);
     if (has_strength(setup)) {
         particles.add(field::deviatoric_stress);
@@ -169,7 +170,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
                    {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
                     &field::volume_curvature},
                    [&](Cells cells) {
-                       sph::godunov_pass(particles_, table, cells, settings, time_step_, pass_count_);
+                       sph::godunov_pass(particles_, table, cells, settings, pass_count_);
                    });
     else
         overlapped(

@@ -59,7 +59,7 @@ struct GodunovForce {
 template <int D, class Options, class Real>
 GodunovForce<Real, D> godunov_pair(const GodunovParticle<Real, D, Options>& i,
                                    const GodunovParticle<Real, D, Options>& j, Real h,
-                                   const Gaussian<D>& kernel, const Settings& settings, double time_step) {
+                                   const Gaussian<D>& kernel, const Settings& settings) {
     using std::max, std::min, std::sqrt;
     using P = GodunovPlaces<D, Options>;
     constexpr double root_half = 0.70710678118654752;
@@ -114,7 +114,8 @@ GodunovForce<Real, D> godunov_pair(const GodunovParticle<Real, D, Options>& i,
     const Real share = centre * inverse_distance;  // s* / distance
     const Real share_i = 0.5 + share, share_j = 0.5 - share;
 
-    // Riemann problem between states reconstructed at s*, centred in time.
+    // Riemann problem between states reconstructed at s*. No state may lie outside the two values, whose difference
+    // the gradients, being smooth, exceed next to jumps; first order at compressions fast against sound.
     const Vector<Real, D> v_i = i.vector(P::velocity), v_j = j.vector(P::velocity);
     const Real u_i = dot(v_i, e), u_j = dot(v_j, e);
     Real star_pressure = 0.5 * (pressure_i + pressure_j), velocity_change = 0;
@@ -128,15 +129,16 @@ GodunovForce<Real, D> godunov_pair(const GodunovParticle<Real, D, Options>& i,
             const Real p_slope_i = dot(i.vector(P::pressure_gradient), e),
                        p_slope_j = dot(j.vector(P::pressure_gradient), e);
             const auto gentle = 3 * (u_j - u_i) < min(c_i, c_j);
-            const auto limited = [&](Real slope, Real product) {
-                return select(gentle && product > 0, slope, Real(0.0));
+            const Real u_secant = (u_i - u_j) * inverse_distance,
+                       p_secant = (pressure_i - pressure_j) * inverse_distance;
+            const auto limited = [&](Real slope, Real other, Real secant) {
+                return select(gentle && slope * secant > 0 && other * secant > 0, lesser(slope, secant), Real(0.0));
             };
-            const Real reach_i = centre + 0.5 * (c_i * time_step - distance);
-            const Real reach_j = centre - 0.5 * (c_j * time_step - distance);
-            right.pressure += limited(p_slope_i * reach_i, p_slope_i * p_slope_j);
-            left.pressure += limited(p_slope_j * reach_j, p_slope_i * p_slope_j);
-            right.velocity += limited(u_slope_i * reach_i, u_slope_i * u_slope_j);
-            left.velocity += limited(u_slope_j * reach_j, u_slope_i * u_slope_j);
+            const Real reach_i = centre - 0.5 * distance, reach_j = centre + 0.5 * distance;
+            right.pressure += limited(p_slope_i, p_slope_j, p_secant) * reach_i;
+            left.pressure += limited(p_slope_j, p_slope_i, p_secant) * reach_j;
+            right.velocity += limited(u_slope_i, u_slope_j, u_secant) * reach_i;
+            left.velocity += limited(u_slope_j, u_slope_i, u_secant) * reach_j;
         }
         const RiemannSolution<Real> star = solve_riemann(left, right, settings.shock_slope);
         const auto false_tension = star.pressure < 0 && pressure_i > 0 && pressure_j > 0;

@@ -9,11 +9,9 @@ namespace talus::sph {
 template <int D, class Options>
 class GodunovPass {
   public:
-    GodunovPass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-                double time_step)
+    GodunovPass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings)
         : kernel_(settings.cutoff),
           settings_(settings),
-          time_step_(time_step),
           smoothing_length_(particles.data(field::smoothing_length)),
           acceleration_(components_to_write<D>(particles, field::acceleration)),
           power_(particles.data(field::specific_power)),
@@ -79,7 +77,7 @@ class GodunovPass {
         GodunovForce<Lanes, D> total{};
         for (std::size_t k = 0; k < partners.size(); k += lane_count) {
             const Particle other{records_.gather(partners.data() + k)};
-            const auto term = godunov_pair<D, Options>(own, other, h, kernel_, settings_, time_step_);
+            const auto term = godunov_pair<D, Options>(own, other, h, kernel_, settings_);
             const Lanes mass =
                 select(first_lanes(partners.size() - k), other.scalar(Places::mass), Lanes(0.0));
             for (std::size_t d = 0; d < D; ++d) total.force[d] += mass * term.force[d];
@@ -91,7 +89,6 @@ class GodunovPass {
 
     const Gaussian<D> kernel_;
     const Settings settings_;
-    const double time_step_;
     const double* smoothing_length_;
     std::array<double*, D> acceleration_;
     double* power_;
@@ -104,13 +101,10 @@ class GodunovPass {
 /// Runs the pass with the options that fit the fields of the set and the settings.
 template <int D>
 void run_godunov(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-                 double time_step, PassCount& count);
+                 PassCount& count);
 
-extern template void run_godunov<1>(ParticleSet&, const CellTable&, Cells, const Settings&, double,
-                                    PassCount&);
-extern template void run_godunov<2>(ParticleSet&, const CellTable&, Cells, const Settings&, double,
-                                    PassCount&);
-extern template void run_godunov<3>(ParticleSet&, const CellTable&, Cells, const Settings&, double,
-                                    PassCount&);
+extern template void run_godunov<1>(ParticleSet&, const CellTable&, Cells, const Settings&, PassCount&);
+extern template void run_godunov<2>(ParticleSet&, const CellTable&, Cells, const Settings&, PassCount&);
+extern template void run_godunov<3>(ParticleSet&, const CellTable&, Cells, const Settings&, PassCount&);
 
 }  // namespace talus::sph

@@ -5,8 +5,8 @@ namespace talus::sph {
 
 template <int D, class Options>
 void run_with(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-              double time_step, PassCount& count) {
-    GodunovPass<D, Options> pass(particles, table, which, settings, time_step);
+              PassCount& count) {
+    GodunovPass<D, Options> pass(particles, table, which, settings);
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
         const std::uint64_t pairs = pass.visit(cell, runs);
         count.pairs += pairs;
@@ -16,10 +16,10 @@ void run_with(ParticleSet& particles, const CellTable& table, Cells which, const
 
 template <int D>
 void run_godunov(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-                 double time_step, PassCount& count) {
+                 PassCount& count) {
     const bool strength = particles.has(field::predicted_stress);
     const auto run = [&]<class Options>(Options) {
-        run_with<D, Options>(particles, table, which, settings, time_step, count);
+        run_with<D, Options>(particles, table, which, settings, count);
     };
     const auto with_h = [&]<bool variable>(std::bool_constant<variable>) {
         // Where bodies change little in the cost, one instantiation serves one or several.

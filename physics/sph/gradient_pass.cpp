@@ -7,7 +7,9 @@ namespace talus::sph {
 
 namespace {
 
-/// Sums over the partners of one particle.
+/// Sums over the partners of one particle, V_j = m_j / ((rho_i + rho_j) / 2): weighed by the partner's volume
+/// alone, the continuity equation overcompresses in shocks, by 1 % at a compression of 1.8; by its mass, it
+/// undercompresses as much.
 template <class Real, int D>
 struct GradientSums {
     Vector<Real, D> raw{};                            ///< sum m grad W
@@ -34,6 +36,7 @@ class GradientPass {
         records_.copy(place_position, components<D>(particles, field::position));
         records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));
         records_.copy(place_mass, components<1>(particles, field::mass));
+        records_.copy(place_density, components<1>(particles, field::predicted_density));
         records_.fill_copies(finish());
     }
 
@@ -48,14 +51,12 @@ class GradientPass {
 
   private:
     static constexpr std::size_t place_position = 0, place_velocity = D, place_mass = 2 * D,
-                                 place_volume = place_mass + 1, place_pressure = place_mass + 2,
+                                 place_density = place_mass + 1, place_pressure = place_mass + 2,
                                  record_size = place_pressure + (with_pressure ? 1 : 0);
 
     /// Sets what is not copied from a field.
     auto finish() const {
-        return [density = density_](std::size_t k, auto& values) {
-            values[place_volume] = values[place_mass] / density[k];
-        };
+        return [](std::size_t, auto&) {};
     }
 
     [[gnu::flatten]] GradientSums<double, D> sum_over_partners(std::uint32_t i) const {
@@ -69,7 +70,8 @@ class GradientPass {
             for (std::size_t d = 0; d < D; ++d) r[d] = own[place_position + d] - other[place_position + d];
             const Lanes factor =
                 select(first_lanes(partners.size() - k), kernel_.factor(dot(r, r), inverse_h), Lanes(0.0));
-            const Lanes volume_factor = other[place_volume] * factor;
+            const Lanes mean_density = 0.5 * (own[place_density] + other[place_density]);
+            const Lanes volume_factor = other[place_mass] * factor / mean_density;
             Vector<Lanes, D> volume_gradient;
             for (std::size_t b = 0; b < D; ++b) volume_gradient[b] = volume_factor * r[b];
             for (std::size_t b = 0; b < D; ++b) {

@@ -74,11 +74,11 @@ class SphSample {
         count.work_of_cell.assign(decomposition.own_cells().size(), 0.0);
         refresh({&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
                  &field::volume_curvature});
-        sph::godunov_pass(particles, decomposition.table(), which, settings, time_step, count);
+        sph::godunov_pass(particles, decomposition.table(), which, settings, count);
         return count;
     }
 
-    static constexpr double spacing = 1e-3, time_step = 1e-8, density = 2700, sound_speed = 3100;
+    static constexpr double spacing = 1e-3, density = 2700, sound_speed = 3100;
     Communicator comm;
     ParticleSet particles;
     Decomposition decomposition;

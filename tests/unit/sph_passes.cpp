@@ -166,7 +166,6 @@ class Reference {
     }
 
     void forces(bool strength) {
-        const double dt = SphSample::time_step;
         for (Plain& i : all)
             for (const Plain& j : all) {
                 const Vector3d r = i.x - j.x;
@@ -195,9 +194,14 @@ class Reference {
                 double du_i = e.dot(i.velocity_gradient * e), du_j = e.dot(j.velocity_gradient * e);
                 double dp_i = i.grad_p.dot(e), dp_j = j.grad_p.dot(e);
                 const bool gentle = settings_.second_order && 3 * (u_j - u_i) < std::min(i.c, j.c);
-                if (!gentle || du_i * du_j <= 0) du_i = du_j = 0;
-                if (!gentle || dp_i * dp_j <= 0) dp_i = dp_j = 0;
-                const double to_i = s + i.c * dt / 2 - d / 2, to_j = s - j.c * dt / 2 + d / 2;
+                const auto limit = [gentle](double& own, double& other, double secant) {
+                    const bool same_sign = own * secant > 0 && other * secant > 0;
+                    own = gentle && same_sign ? std::copysign(std::min(std::abs(own), std::abs(secant)), secant) : 0;
+                    other = gentle && same_sign ? std::copysign(std::min(std::abs(other), std::abs(secant)), secant) : 0;
+                };
+                limit(du_i, du_j, (u_i - u_j) / d);
+                limit(dp_i, dp_j, (i.p - j.p) / d);
+                const double to_i = s - d / 2, to_j = s + d / 2;
                 const auto [p_riemann, v_riemann] =
                     riemann(j.rho, j.p + dp_j * to_j, u_j + du_j * to_j, j.c, i.rho, i.p + dp_i * to_i,
                             u_i + du_i * to_i, i.c, settings_.shock_slope);
