@@ -173,7 +173,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
                    {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
                     &field::volume_curvature},
                    [&](Cells cells) {
-                       sph::godunov_pass(particles_, table, cells, settings, time_step_, pass_count_);
+                       sph::godunov_pass(particles_, table, cells, settings, 0, pass_count_);
                    });
     else
         overlapped(

@@ -115,8 +115,14 @@ GodunovForce<D> godunov_pair(const GodunovParticle<D>& i, const GodunovParticle<
     const double share = volume.centre * inverse_distance;  // s*/distance
     double star_velocity = 0.5 * (v_i + v_j) + (v_i - v_j) * share;
     if (settings.riemann) {
-        double v_slope_i = stretch<D>(i.velocity_gradient, e), v_slope_j = stretch<D>(j.velocity_gradient, e);
-        double p_slope_i = along<D>(i.pressure_gradient, e), p_slope_j = along<D>(j.pressure_gradient, e);
+        // No state may lie outside the two values, whose difference the gradients, being smooth, exceed next
+        // to jumps; first order at compressions that are fast against sound.
+        const double v_secant = (v_i - v_j) * inverse_distance,
+                     p_secant = (i.pressure - j.pressure) * inverse_distance;
+        const double v_slope_i = limited_slope(stretch<D>(i.velocity_gradient, e), v_secant),
+                     v_slope_j = limited_slope(stretch<D>(j.velocity_gradient, e), v_secant);
+        const double p_slope_i = limited_slope(along<D>(i.pressure_gradient, e), p_secant),
+                     p_slope_j = limited_slope(along<D>(j.pressure_gradient, e), p_secant);
         const bool gentle = settings.second_order && 3 * (v_j - v_i) < std::min(i.sound_speed, j.sound_speed);
         const double keep_v = gentle && v_slope_i * v_slope_j > 0 ? 1.0 : 0.0;
         const double keep_p = gentle && p_slope_i * p_slope_j > 0 ? 1.0 : 0.0;

@@ -71,6 +71,13 @@ inline VolumeMoments quintic_volume(const VolumeEnds& v, double distance, double
         h2);
 }
 
+/// Slope between two particles: the lesser of a particle's own and the one between their values, 0 where they
+/// disagree in sign (minmod: P. L. Roe, Annu. Rev. Fluid Mech. 18 (1986) 337).
+inline double limited_slope(double own, double secant) {
+    const double lesser = std::abs(own) < std::abs(secant) ? own : secant;
+    return own * secant > 0 ? lesser : 0.0;
+}
+
 /// One side of a Riemann problem along the line between two particles.
 struct RiemannSide {
     double density, pressure, velocity, sound_speed;
