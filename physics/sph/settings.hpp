@@ -28,7 +28,7 @@ struct Settings {
     bool riemann = true;                               ///< false: mean pressure, no dissipation
     bool second_order = true;                          ///< linear reconstruction with limiter
     bool riemann_velocity = false;  ///< v* from the Riemann problem (gases) instead of interpolation
-    double shock_slope = 1;         ///< s in W^2 = rho (rho c^2 + s (p* - p)); (gamma + 1)/2 for a gas
+    double shock_slope = 1;  ///< s in W^2 = rho (rho c^2 + s (p* - p)); (gamma + 1)/2 for a gas, about 2 for rock
 
     bool several_bodies = false;  ///< contacts between bodies bear neither tension nor shear
 
