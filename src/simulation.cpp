@@ -169,9 +169,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
         overlapped(Phase::forces,
                    {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
                     &field::volume_curvature},
-                   [&](Cells cells) {
-                       sph::godunov_pass(particles_, table, cells, settings, pass_count_);
-                   });
+                   [&](Cells cells) { sph::godunov_pass(particles_, table, cells, settings, pass_count_); });
     else
         overlapped(
             Phase::forces,

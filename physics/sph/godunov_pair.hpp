@@ -114,8 +114,9 @@ GodunovForce<Real, D> godunov_pair(const GodunovParticle<Real, D, Options>& i,
     const Real share = centre * inverse_distance;  // s* / distance
     const Real share_i = 0.5 + share, share_j = 0.5 - share;
 
-    // Riemann problem between states reconstructed at s*. No state may lie outside the two values, whose difference
-    // the gradients, being smooth, exceed next to jumps; first order at compressions fast against sound.
+    // Riemann problem between states reconstructed at s*. No state may lie outside the two values, whose
+    // difference the gradients, being smooth, exceed next to jumps; first order at compressions fast against
+    // sound.
     const Vector<Real, D> v_i = i.vector(P::velocity), v_j = j.vector(P::velocity);
     const Real u_i = dot(v_i, e), u_j = dot(v_j, e);
     Real star_pressure = 0.5 * (pressure_i + pressure_j), velocity_change = 0;
@@ -132,7 +133,8 @@ GodunovForce<Real, D> godunov_pair(const GodunovParticle<Real, D, Options>& i,
             const Real u_secant = (u_i - u_j) * inverse_distance,
                        p_secant = (pressure_i - pressure_j) * inverse_distance;
             const auto limited = [&](Real slope, Real other, Real secant) {
-                return select(gentle && slope * secant > 0 && other * secant > 0, lesser(slope, secant), Real(0.0));
+                return select(gentle && slope * secant > 0 && other * secant > 0, lesser(slope, secant),
+                              Real(0.0));
             };
             const Real reach_i = centre - 0.5 * distance, reach_j = centre + 0.5 * distance;
             right.pressure += limited(p_slope_i, p_slope_j, p_secant) * reach_i;

@@ -35,7 +35,8 @@ class PairRecords {
   public:
     PairRecords(const ParticleSet& particles, const CellTable& table, Cells which)
         : own_(static_cast<std::uint32_t>(particles.size())) {
-        std::uint32_t longest = 1, filled = 0;  // windows do not begin in order: a row of cells may be missing
+        std::uint32_t longest = 1,
+                      filled = 0;  // windows do not begin in order: a row of cells may be missing
         bool any = false;
         table.for_each_own(which, [&](const CellEntry&, std::span<const Run> runs, std::size_t) {
             const Run window = own_window(runs);

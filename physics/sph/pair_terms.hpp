@@ -81,8 +81,8 @@ VolumeMoments<Real> quintic_moments(const VolumeEnds<Real>& v, Real distance, Re
         h2);
 }
 
-/// The slope of lesser size of two (minmod, where they agree in sign: P. L. Roe, Annu. Rev. Fluid Mech. 18 (1986)
-/// 337).
+/// The slope of lesser size of two (minmod, where they agree in sign: P. L. Roe, Annu. Rev. Fluid Mech. 18
+/// (1986) 337).
 template <class Real>
 Real lesser(Real own, Real secant) {
     using std::abs;

@@ -74,6 +74,8 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         all_gas &= gas != nullptr;
         any_strength |= material.shear_modulus > 0;
         if (gas) shock_slope = std::max(shock_slope, 0.5 * (gas->gamma + 1));
+        // dU/du_p of most solids is near 1.5, which makes 1.5 (strong shocks) to 3 (weak ones).
+        if (std::holds_alternative<Tillotson>(material.eos)) shock_slope = std::max(shock_slope, 2.0);
     }
     const bool godunov = table.choice("formulation", {"godunov", "standard"}, "godunov") == "godunov";
     settings.formulation = godunov ? sph::Formulation::godunov : sph::Formulation::standard;

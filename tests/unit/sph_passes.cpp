@@ -75,7 +75,8 @@ class Reference {
 
   private:
     Vector3d grad_w(const Vector3d& r, double h) const {
-        if (r.norm() >= settings_.cutoff * h) return 0 * r;  // of the pair, the narrower kernel may have ended
+        if (r.norm() >= settings_.cutoff * h)
+            return 0 * r;  // of the pair, the narrower kernel may have ended
         return -2 * norm_ / std::pow(h, D_ + 2) * std::exp(-r.squaredNorm() / (h * h)) * r;
     }
 
@@ -87,12 +88,13 @@ class Reference {
                 const Vector3d r = i.x - j.x;
                 if (&i == &j || r.norm() >= settings_.cutoff * i.h) continue;
                 const Vector3d gw = grad_w(r, i.h);
-                moment -= j.m / j.rho * r * gw.transpose();
-                velocity += j.m / j.rho * (j.v - i.v) * gw.transpose();
-                pressure += j.m / j.rho * (j.p - i.p) * gw;
+                moment -= j.m / (0.5 * (i.rho + j.rho)) * r * gw.transpose();
+                velocity += j.m / (0.5 * (i.rho + j.rho)) * (j.v - i.v) * gw.transpose();
+                pressure += j.m / (0.5 * (i.rho + j.rho)) * (j.p - i.p) * gw;
                 raw += j.m * gw;
-                i.velocity_gradient_size += (j.m / j.rho * (j.v - i.v) * gw.transpose()).norm();
-                i.grad_p_size += (j.m / j.rho * (j.p - i.p) * gw).norm();
+                i.velocity_gradient_size +=
+                    (j.m / (0.5 * (i.rho + j.rho)) * (j.v - i.v) * gw.transpose()).norm();
+                i.grad_p_size += (j.m / (0.5 * (i.rho + j.rho)) * (j.p - i.p) * gw).norm();
                 i.grad_v_size += (j.m * gw).norm() / (i.rho * i.rho);
             }
             for (int a = D_; a < 3; ++a) moment(a, a) = 1;
@@ -196,8 +198,12 @@ class Reference {
                 const bool gentle = settings_.second_order && 3 * (u_j - u_i) < std::min(i.c, j.c);
                 const auto limit = [gentle](double& own, double& other, double secant) {
                     const bool same_sign = own * secant > 0 && other * secant > 0;
-                    own = gentle && same_sign ? std::copysign(std::min(std::abs(own), std::abs(secant)), secant) : 0;
-                    other = gentle && same_sign ? std::copysign(std::min(std::abs(other), std::abs(secant)), secant) : 0;
+                    own = gentle && same_sign
+                              ? std::copysign(std::min(std::abs(own), std::abs(secant)), secant)
+                              : 0;
+                    other = gentle && same_sign
+                                ? std::copysign(std::min(std::abs(other), std::abs(secant)), secant)
+                                : 0;
                 };
                 limit(du_i, du_j, (u_i - u_j) / d);
                 limit(dp_i, dp_j, (i.p - j.p) / d);

@@ -7,9 +7,9 @@
 #include "tests/support/exact_riemann.hpp"
 #include "tests/support/scene_run.hpp"
 
-/// Shock tubes against exact solutions, Godunov and standard SPH side by side. The tables that the tests print
-/// are those of the scenes' READMEs. Bounds on errors are 1.15 times what was measured when they were set, and
-/// bounds on orders 0.1 below.
+/// Shock tubes against exact solutions, Godunov and standard SPH side by side. The tables that the tests
+/// print are those of the scenes' READMEs. Bounds on errors are 1.15 times what was measured when they were
+/// set, and bounds on orders 0.1 below.
 namespace talus::test {
 namespace {
 
@@ -71,13 +71,14 @@ std::vector<Errors> run_tube(const Communicator& comm, const Tube& tube, const s
     const reference::ExactRiemann exact(tube.left, tube.right, 1.4);
     std::vector<Errors> errors;
     for (const int n : left) {
-        const GasResult gas = run_gas(comm, scene("sod_tube"),
-                                      joined(joined(tube.overrides, how),
-                                             {fmt::format("body[0].particles={}", n),
-                                              fmt::format("body[1].particles={}", n / left_to_right)}));
+        const GasResult gas = run_gas(
+            comm, scene("sod_tube"),
+            joined(joined(tube.overrides, how), {fmt::format("body[0].particles={}", n),
+                                                 fmt::format("body[1].particles={}", n / left_to_right)}));
         EXPECT_LT(gas.energy_drift, 1e-13);
         EXPECT_GT(gas.least_energy, 0);
-        errors.push_back(errors_of(gas, [&](double x) { return exact.sample(x / gas.time); }, -1, 1));
+        errors.push_back(errors_of(
+            gas, [&](double x) { return exact.sample(x / gas.time); }, -1, 1));
         print_row(comm, formulation, gas.x.size(), errors.back());
     }
     return errors;
@@ -91,21 +92,23 @@ TEST(ShockTubes, SodConvergesInFirstOrder) {
     const Expected expected[] = {{{4.6e-3, 1.4e-2, 4.5e-3}, 0.87}, {{5.2e-3, 2.0e-2, 5.8e-3}, 0.80}};
     for (std::size_t f = 0; f < 2; ++f)
         expect_convergence(
-            run_tube(comm, sod, formulations[f].second, formulations[f].first, {80, 160, 320}, 8), expected[f]);
+            run_tube(comm, sod, formulations[f].second, formulations[f].first, {80, 160, 320}, 8),
+            expected[f]);
 }
 
 // Toro 2009, table 4.1, test 3: a shock of Mach number 198.
 TEST(ShockTubes, StrongTubeConvergesInFirstOrder) {
     const Communicator comm(MPI_COMM_WORLD);
-    const Tube strong{"strong",
-                      {1, 0, 1000},
-                      {1, 0, 0.01},
-                      {"body[0].pressure=1000", "body[1].density=1", "body[1].pressure=0.01",
-                       "run.end_time=0.012"}};
+    const Tube strong{
+        "strong",
+        {1, 0, 1000},
+        {1, 0, 0.01},
+        {"body[0].pressure=1000", "body[1].density=1", "body[1].pressure=0.01", "run.end_time=0.012"}};
     const Expected expected[] = {{{2.7e-2, 0.18, 4.3}, 0.7}, {{1.6e-2, 0.12, 5.2}, 0.85}};
     for (std::size_t f = 0; f < 2; ++f)
         expect_convergence(
-            run_tube(comm, strong, formulations[f].second, formulations[f].first, {50, 100, 200}, 1), expected[f]);
+            run_tube(comm, strong, formulations[f].second, formulations[f].first, {50, 100, 200}, 1),
+            expected[f]);
 }
 
 // W. F. Noh, J. Comput. Phys. 72 (1987) 78: for p -> 0 the density jumps by (gamma + 1)/(gamma - 1) = 4, the
