@@ -170,12 +170,11 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
     if (settings.formulation == sph::Formulation::godunov)
-        overlapped(Phase::forces,
-                   {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
-                    &field::volume_curvature},
-                   [&](Cells cells) {
-                       sph::godunov_pass(particles_, table, cells, settings, 0, pass_count_);
-                   });
+        overlapped(
+            Phase::forces,
+            {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
+             &field::volume_curvature},
+            [&](Cells cells) { sph::godunov_pass(particles_, table, cells, settings, 0, pass_count_); });
     else
         overlapped(
             Phase::forces,
