@@ -133,7 +133,11 @@ inline constexpr Field<double> specific_power{
     owner,
     "work of the pair forces on the particle per mass and time, kinetic and internal together"};
 inline constexpr Field<double> viscous_speed{
-    "viscous_speed", "m s-1", scalar, work, owner,
+    "viscous_speed",
+    "m s-1",
+    scalar,
+    work,
+    owner,
     "greatest sensitivity of the artificial viscosity to the velocity difference over all partners"};
 inline constexpr Field<double> velocity_gradient{
     "velocity_gradient",

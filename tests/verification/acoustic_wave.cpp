@@ -41,14 +41,14 @@ struct Method {
 /// Second order down to 1e-3 of the amplitude; the finite number of partners ends it at some 5e-4.
 /// Viscosity as standard SPH needs it for shocks damps in first order.
 TEST(AcousticWave, ConvergesInSecondOrder) {
-    const Communicator comm(MPI_COMM_WORLD);
+    const Communicator comm(MPI_COMM_SELF);  // too small to share: every rank does the same
     const Method methods[] = {
         {"godunov", {}, {3.2e-3, 9.2e-4}, 1.9},
         {"standard, no viscosity",
          {"sph.formulation=\"standard\"", "sph.viscosity_alpha=0", "sph.viscosity_beta=0"},
-         {1e-3, 1e-3},
+         {1.1e-4, 1.9e-4},
          1.9},
-        {"standard", {"sph.formulation=\"standard\""}, {5e-2, 3e-2}, 0.9},
+        {"standard", {"sph.formulation=\"standard\""}, {3.8e-2, 4e-2}, 0.85},
     };
     for (const Method& method : methods) {
         std::vector<WaveErrors> errors;
@@ -59,7 +59,7 @@ TEST(AcousticWave, ConvergesInSecondOrder) {
                 run_gas(comm, std::filesystem::path(TALUS_SOURCE_DIR) / "runs/acoustic_wave", overrides);
             EXPECT_LT(gas.energy_drift, 1e-13);
             errors.push_back(wave_errors(gas));
-            if (comm.is_root())
+            if (Communicator(MPI_COMM_WORLD).is_root())
                 fmt::print("| {} | {} | {:.2e} | {:.2e} |\n", method.name, n, errors.back().velocity,
                            errors.back().density);
         }
