@@ -18,9 +18,9 @@ struct Settings {
     DensityMethod density = DensityMethod::continuity;
     bool variable_smoothing_length = false;
     bool uniform_smoothing_length = true;  ///< all particles have the same h (found by the simulation)
-    double eta = 1;                       ///< h = eta (m / rho)^(1/D) when it varies
-    double smoothing_widening = 1;        ///< C_smooth: the density that sets h is smoothed over C_smooth h
-    double largest_smoothing_length = 0;  ///< cap of h [m]; 0: none
+    double eta = 1;                        ///< h = eta (m / rho)^(1/D) when it varies
+    double smoothing_widening = 1;         ///< C_smooth: the density that sets h is smoothed over C_smooth h
+    double largest_smoothing_length = 0;   ///< cap of h [m]; 0: none
 
     // Godunov SPH
     Interpolation compressed = Interpolation::linear;  ///< for pairs with P_i + P_j > 0
@@ -56,5 +56,10 @@ constexpr Interpolation stable_compressed(int dimension) {
 constexpr Interpolation stable_stretched(int dimension) {
     return dimension == 1 ? Interpolation::quintic : Interpolation::cubic;
 }
+
+/// Where the Gaussian is cut [h]. At 2 h it drops from 1.8 % of its peak; a compressed fluid in 3D, which has
+/// no stiffness in shear against that, pairs within some ten crossings of a spacing. Elastic stress prevents
+/// it.
+constexpr double default_cutoff(int dimension, bool solid) { return dimension == 3 && solid ? 2 : 3; }
 
 }  // namespace talus::sph

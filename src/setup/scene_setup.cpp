@@ -92,7 +92,7 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         settings.viscosity_beta = table.number("viscosity_beta", "1", 2.0, not_negative);
     }
     if (settings.kernel == sph::KernelKind::gaussian)
-        settings.cutoff = table.number("cutoff", "1", dimension == 3 ? 2.0 : 3.0, {1, 3.1});
+        settings.cutoff = table.number("cutoff", "1", sph::default_cutoff(dimension, any_strength), {1, 3.1});
     const std::string density = all_gas ? "summation" : "continuity";
     settings.density = table.choice("density", {"continuity", "summation"}, density) == "summation"
                            ? sph::DensityMethod::summation
