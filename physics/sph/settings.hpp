@@ -57,9 +57,9 @@ constexpr Interpolation stable_stretched(int dimension) {
     return dimension == 1 ? Interpolation::quintic : Interpolation::cubic;
 }
 
-/// Where the Gaussian is cut [h]. At 2 h it drops from 1.8 % of its peak; a compressed fluid in 3D, which has
-/// no stiffness in shear against that, pairs within some ten crossings of a spacing. Elastic stress prevents
-/// it.
+/// Where the Gaussian is cut [h]. At 2 h its slope ends at 1.8 % of the peak, and compressed matter in 3D
+/// pairs, fluids within some ten crossings of a spacing. Solids keep 2 h all the same, a third of the
+/// partners: their pairs take several times as long, longer than shocks last.
 constexpr double default_cutoff(int dimension, bool solid) { return dimension == 3 && solid ? 2 : 3; }
 
 }  // namespace talus::sph
