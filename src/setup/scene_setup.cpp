@@ -93,12 +93,8 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         settings.viscosity_alpha = table.number("viscosity_alpha", "1", 1.0, not_negative);
         settings.viscosity_beta = table.number("viscosity_beta", "1", 2.0, not_negative);
     }
-    if (settings.kernel == sph::KernelKind::gaussian) {
-        // As far as partners are cheap: cut at 2 h in 3D the summed density of a gas is 0.8 % low.
-        const double in_3d = all_gas ? 2.5 : 2;
-        settings.cutoff =
-            table.number("cutoff", "1", dimension == 1 ? 4 : dimension == 2 ? 3 : in_3d, {1, 4});
-    }
+    if (settings.kernel == sph::KernelKind::gaussian)
+        settings.cutoff = table.number("cutoff", "1", sph::default_cutoff(dimension, any_strength), {1, 4});
     const std::string density = all_gas ? "summation" : "continuity";
     settings.density = table.choice("density", {"continuity", "summation"}, density) == "summation"
                            ? sph::DensityMethod::summation

@@ -22,7 +22,8 @@ struct LatticeCase {
     sph::Interpolation compressed = sph::Interpolation::linear, stretched = sph::Interpolation::linear;
     double cutoff = 3.05;  ///< no shell of a cubic lattice lies at it, nor at sqrt2 of it
     sph::DensityMethod density = sph::DensityMethod::continuity;
-    bool riemann = false;  ///< false: no dissipation
+    bool riemann = false;      ///< false: no dissipation
+    double shear_modulus = 0;  ///< mu/(rho c^2)
     double courant = 0.1;
 };
 
