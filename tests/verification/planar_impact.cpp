@@ -25,7 +25,8 @@ struct Plateau {
     double heated;                    ///< how far from the impact plane the density deviates by 2 %
 };
 
-/// Averages from 0.4 to 0.8 of the way to the shock, which is where half of the plateau's pressure is reached.
+/// Averages from 0.4 to 0.8 of the way to the shock, which is where half of the plateau's pressure is
+/// reached.
 Plateau measure(const Simulation& run) {
     const auto x = on_every_rank(run, field::position), P = on_every_rank(run, field::pressure),
                rho = on_every_rank(run, field::predicted_density);
@@ -56,8 +57,8 @@ Plateau measure(const Simulation& run) {
     return result;
 }
 
-/// The error is the scheme's own and does not shrink with the spacing, since shocks are always a few particles wide:
-/// at most 0.5 % is found.
+/// The error is the scheme's own and does not shrink with the spacing, since shocks are always a few
+/// particles wide: at most 0.5 % is found.
 constexpr double tolerance = 0.01;
 
 class PlanarImpact : public testing::TestWithParam<Case> {};
@@ -72,8 +73,7 @@ TEST_P(PlanarImpact, PlateauFollowsTheHugoniot) {
     }
     const SceneSetup scene = solid_scene(comm, "planar_impact", overrides);
     const Material& material = scene.simulation.materials[0];
-    const ShockState exact =
-        symmetric_impact(material.eos, material.reference_density, 0, impact.speed);
+    const ShockState exact = symmetric_impact(material.eos, material.reference_density, 0, impact.speed);
     const double through = volume(scene.bodies[0].shape, 1) / exact.shock_speed;  // the slab [s]
 
     const auto run = started(comm, scene);
@@ -90,11 +90,11 @@ TEST_P(PlanarImpact, PlateauFollowsTheHugoniot) {
     const double spacing = scene.bodies[0].spacing * material.reference_density / exact.density;
     EXPECT_LT(found.heated, 12 * spacing) << "heated further than the start of the shock reaches";
     if (comm.is_root())
-        fmt::print("| {} | {:g} | {} | {:.2f} / {:.2f} | {:.0f} / {:.0f} | {:.4f} / {:.4f} | {:.1f} | {:.0f} |\n",
-                   impact.material, impact.speed / 1000, impact.order, found.pressure / 1e9,
-                   exact.pressure / 1e9, shock_speed, exact.shock_speed,
-                   found.density / material.reference_density, exact.density / material.reference_density,
-                   100 * found.spread, found.heated / spacing);
+        fmt::print(
+            "| {} | {:g} | {} | {:.2f} / {:.2f} | {:.0f} / {:.0f} | {:.4f} / {:.4f} | {:.1f} | {:.0f} |\n",
+            impact.material, impact.speed / 1000, impact.order, found.pressure / 1e9, exact.pressure / 1e9,
+            shock_speed, exact.shock_speed, found.density / material.reference_density,
+            exact.density / material.reference_density, 100 * found.spread, found.heated / spacing);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PlanarImpact,

@@ -7,8 +7,8 @@
 #include "comm/exact_sum.hpp"
 #include "tests/support/solid_scene.hpp"
 
-/// runs/rotating_sphere: a turning sphere keeps its angular momentum and has no stress but what the centrifugal
-/// force needs.
+/// runs/rotating_sphere: a turning sphere keeps its angular momentum and has no stress but what the
+/// centrifugal force needs.
 namespace talus::test {
 namespace {
 
@@ -39,7 +39,8 @@ TEST(RotatingSphere, KeepsAngularMomentumAndStaysFreeOfStress) {
     const SceneSetup scene = solid_scene(comm, "rotating_sphere");
     const Material& material = scene.simulation.materials[0];
     const double spin = scene.bodies[0].spin[2];
-    const double centrifugal = material.reference_density * spin * spin;  // times the radius squared, which is 1
+    const double centrifugal =
+        material.reference_density * spin * spin;  // times the radius squared, which is 1
     const auto run = started(comm, scene);
     const Totals before = run->totals();
     double count = 0, pressure = 0, deviatoric = 0;  // over the second half: the start shakes the sphere
@@ -63,8 +64,9 @@ TEST(RotatingSphere, KeepsAngularMomentumAndStaysFreeOfStress) {
     // The deviatoric forces between pairs are not central, so nothing keeps the angular momentum exactly.
     EXPECT_NEAR(change, 0, 3e-3);
     EXPECT_NEAR(after.kinetic_energy / before.kinetic_energy, 1, 3e-3);
-    // Virial theorem: the mean pressure is -2/3 of the kinetic energy per volume, 2/15 rho (spin radius)^2. It acts
-    // on less than the volume, since surfaces bear less stress over 0.6 spacings: a factor of 1.5 here.
+    // Virial theorem: the mean pressure is -2/3 of the kinetic energy per volume, 2/15 rho (spin radius)^2.
+    // It acts on less than the volume, since surfaces bear less stress over 0.6 spacings: a factor of 1.5
+    // here.
     EXPECT_GT(-pressure / centrifugal, 0.9 * 2 / 15);
     EXPECT_LT(-pressure / centrifugal, 1.6 * 2 / 15);
     EXPECT_LT(deviatoric, 0.25 * centrifugal);

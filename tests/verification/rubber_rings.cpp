@@ -59,18 +59,18 @@ TEST(RubberRings, BounceWholeAndWithoutClumps) {
     const Rings end = measure(*run);
     const Totals totals = run->totals();
     if (comm.is_root())
-        fmt::print("| {:g} | {:.2f} | {:.3f} | {:.2f} .. {:.2f} | {:.1f} | {:.1e} |\n", spacing, -end.velocity[0] / speed,
-                   totals.kinetic_energy / energy, nearest, loneliest, end.gap / spacing,
-                   (totals.kinetic_energy + totals.internal_energy) / energy - 1);
+        fmt::print("| {:g} | {:.2f} | {:.3f} | {:.2f} .. {:.2f} | {:.1f} | {:.1e} |\n", spacing,
+                   -end.velocity[0] / speed, totals.kinetic_energy / energy, nearest, loneliest,
+                   end.gap / spacing, (totals.kinetic_energy + totals.internal_energy) / energy - 1);
 
-    // A ring keeps part of the energy as vibration and loses some to the Riemann problems' dissipation; published
-    // pictures show them leave at about half their speed.
+    // A ring keeps part of the energy as vibration and loses some to the Riemann problems' dissipation;
+    // published pictures show them leave at about half their speed.
     EXPECT_LT(end.velocity[0], -0.3 * speed);
     EXPECT_GT(end.velocity[1], 0.3 * speed);
     EXPECT_GT(end.gap, 2 * spacing) << "the rings stick together";
     EXPECT_GT(least_gap, 0.5) << "the rings pass through each other";
-    // Clumps are pairs at a fraction of the spacing; a crack leaves particles without partners at the spacing.
-    // Strains reach 20 %.
+    // Clumps are pairs at a fraction of the spacing; a crack leaves particles without partners at the
+    // spacing. Strains reach 20 %.
     EXPECT_GT(nearest, 0.6);
     EXPECT_LT(loneliest, 1.3);
     EXPECT_NEAR((totals.kinetic_energy + totals.internal_energy) / energy, 1, 1e-4) << "total energy";
