@@ -81,10 +81,10 @@ double time_step(const CrackGrowth& growth, const FractureState& state, double m
                  std::span<const double> damage, std::span<const std::uint8_t> body, std::uint8_t which) {
     double step = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < body.size(); ++i) {
-        if (body[i] != which || damage[i] + most >= 1) continue;
+        if (body[i] != which || damage[i] >= 1) continue;
         const DamageRate r = rate_of<dimension>(growth, state, i);
-        if (damage[i] + most >= r.limit) continue;
-        step = std::min(step, (std::cbrt(damage[i] + most) - std::cbrt(damage[i])) / r.rate);
+        if (std::cbrt(damage[i]) + most >= std::cbrt(r.limit)) continue;
+        step = std::min(step, most / r.rate);
     }
     return step;
 }

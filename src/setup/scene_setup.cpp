@@ -172,6 +172,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.simulation.first_time_step = run.has("first_time_step")
                                            ? run.number("first_time_step", "s", {}, positive)
                                            : std::numeric_limits<double>::infinity();
+    setup.simulation.largest_damage_step = run.number("largest_damage_step", "1", 0.1, {0, 1, true});
     setup.simulation.partition = read_partition(run);
     setup.simulation.rebalance_interval = static_cast<int>(run.integer("rebalance_interval", 10, 0, 1000000));
     const Section output = root.section("output");
