@@ -69,10 +69,12 @@ TEST(RubberRings, BounceWholeAndWithoutClumps) {
     EXPECT_GT(end.velocity[1], 0.3 * speed);
     EXPECT_GT(end.gap, 2 * spacing) << "the rings stick together";
     EXPECT_GT(least_gap, 0.5) << "the rings pass through each other";
-    // Clumps are pairs at a fraction of the spacing; a crack leaves particles without partners at the
-    // spacing. Strains reach 20 %.
+    // Clumps are pairs at a fraction of the spacing. A crack would stay: in the end everyone has partners at
+    // the spacing again. On the way a surface particle or two of the stepped outline, at the edge of the
+    // contact, stand off by up to 1.4 spacings for a while (measured).
     EXPECT_GT(nearest, 0.6);
-    EXPECT_LT(loneliest, 1.3);
+    EXPECT_LT(loneliest, 1.5);
+    EXPECT_LT(end.loneliest, 1.1 * spacing);
     EXPECT_NEAR((totals.kinetic_energy + totals.internal_energy) / energy, 1, 1e-4) << "total energy";
 }
 
