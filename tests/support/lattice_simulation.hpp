@@ -43,8 +43,8 @@ LatticeState lattice_state_in(const LatticeCase& lattice) {
         for (int b = -ny; b <= ny; ++b)
             for (int c = -nz; c <= nz; ++c) {
                 const double r2 = a * a + b * b + c * c;
-                density += std::max(kernel.value(r2, 1), 0.0);
-                moment -= a * a * kernel.factor(r2, 1);
+                density += std::max(kernel.value(r2, 1.0), 0.0);
+                moment -= a * a * kernel.factor(r2, 1.0);
             }
     if (lattice.density == sph::DensityMethod::continuity) density = 1;
     return {density, kernel.norm * std::pow(std::numbers::pi, 0.5 * D) / density, moment};

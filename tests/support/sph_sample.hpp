@@ -27,6 +27,7 @@ class SphSample {
           particles("rock", choice.dimension),
           decomposition(comm, PartitionMethod::slabs) {
         settings.variable_smoothing_length = choice.variable_h;
+        settings.uniform_smoothing_length = !choice.variable_h;
         settings.several_bodies = choice.bodies;
         if (choice.quintic) settings.stretched = sph::Interpolation::quintic;
         for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{

@@ -345,8 +345,8 @@ void expect_antisymmetric() {
     if (Options::quintic) settings.compressed = Interpolation::quintic;
     for (int repeat = 0; repeat < 1000; ++repeat) {
         const Particle i = particle(), j = particle();
-        const auto on_i = sph::godunov_pair<D, Options>(i, j, Lanes(1.0), kernel, settings, 0.1);
-        const auto on_j = sph::godunov_pair<D, Options>(j, i, Lanes(1.0), kernel, settings, 0.1);
+        const auto on_i = sph::godunov_pair<D, Options>(i, j, Lanes(1.0), kernel, settings);
+        const auto on_j = sph::godunov_pair<D, Options>(j, i, Lanes(1.0), kernel, settings);
         for (std::size_t d = 0; d < D; ++d) EXPECT_TRUE(all_of(on_i.force[d] == -on_j.force[d]));
         EXPECT_TRUE(all_of(on_i.power == -on_j.power));
     }
