@@ -5,7 +5,7 @@
 
 namespace talus::sph {
 
-/// exp(-x) for 0 <= x <= 10 to 1e-14, of additions and multiplications alone so that pair loops vectorise:
+/// exp(-x) for 0 <= x <= 10 to 1e-14 and to x = 16 to 1e-11 of itself, of additions and multiplications alone so that pair loops vectorise:
 /// a polynomial for exp(-x/32), squared five times.
 inline double exp_minus(double x) {
     constexpr double centre = 0.15625;
