@@ -5,8 +5,8 @@
 
 namespace talus::sph {
 
-/// exp(-x) for 0 <= x <= 10 to 1e-14 and to x = 16 to 1e-11 of itself, of additions and multiplications alone so that pair loops vectorise:
-/// a polynomial for exp(-x/32), squared five times.
+/// exp(-x) for 0 <= x <= 10 to 1e-14 and to x = 16 to 1e-11 of itself, of additions and multiplications alone
+/// so that pair loops vectorise: a polynomial for exp(-x/32), squared five times.
 inline double exp_minus(double x) {
     constexpr double centre = 0.15625;
     const double z = centre - x * (1.0 / 32);
