@@ -58,7 +58,7 @@ class Decomposition {
     const Communicator& comm_;
     PartitionMethod method_;
     SparseExchange exchange_;
-    Partition partition_{2};
+    Partition partition_{1};
     Halo halo_;
     CellTable table_;
     std::vector<CellEntry> own_cells_;

@@ -16,40 +16,57 @@ struct CellHeader {  // what the plan sends of a cell
     std::uint64_t count;
 };
 
-/// Ranks that own cells within reach of `cell` (which may lie beyond the box).
-void owners_within_reach(const CellGrid& grid, const Partition& partition, const Cell& cell,
-                         std::unordered_map<std::uint64_t, int>& owner_cache, std::vector<int>& owners) {
-    owners.clear();
-    Cell lowest{}, highest{};
-    for (int axis = 0; axis < grid.box().dimension; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        lowest[a] = cell[a] - grid.reach();
-        highest[a] = cell[a] + grid.reach();
-        if (grid.cell_count(axis) > 0) {
-            lowest[a] = std::clamp(lowest[a], 0, grid.cell_count(axis) - 1);
-            highest[a] = std::clamp(highest[a], 0, grid.cell_count(axis) - 1);
-        }
-        lowest[a] >>= partition.block_shift();
-        highest[a] >>= partition.block_shift();
-    }
-    for (int z = lowest[2]; z <= highest[2]; ++z)
-        for (int y = lowest[1]; y <= highest[1]; ++y)
-            for (int x = lowest[0]; x <= highest[0]; ++x) {
-                const std::uint64_t key = block_key_of({x, y, z}, 0);
-                auto [at, is_new] = owner_cache.try_emplace(key, 0);
-                if (is_new) at->second = partition.owner_of_block(key);
-                if (std::find(owners.begin(), owners.end(), at->second) == owners.end())
-                    owners.push_back(at->second);
+/// Ranks that own cells within reach of a cell (which may lie beyond the box). Neighbouring cells mostly
+/// reach the same blocks, whose owners are then known already.
+class OwnersWithinReach {
+  public:
+    OwnersWithinReach(const CellGrid& grid, const Partition& partition)
+        : grid_(grid), partition_(partition) {}
+
+    std::span<const int> operator()(const Cell& cell) {
+        Cell lowest{}, highest{};
+        for (int axis = 0; axis < grid_.box().dimension; ++axis) {
+            const auto a = static_cast<std::size_t>(axis);
+            lowest[a] = cell[a] - grid_.reach();
+            highest[a] = cell[a] + grid_.reach();
+            if (const int count = grid_.cell_count(axis); count > 0) {
+                lowest[a] = std::clamp(lowest[a], 0, count - 1);
+                highest[a] = std::clamp(highest[a], 0, count - 1);
             }
-}
+            lowest[a] >>= partition_.block_shift();
+            highest[a] >>= partition_.block_shift();
+        }
+        if (!owners_.empty() && lowest == lowest_ && highest == highest_) return owners_;
+        lowest_ = lowest;
+        highest_ = highest;
+        owners_.clear();
+        for (int z = lowest[2]; z <= highest[2]; ++z)
+            for (int y = lowest[1]; y <= highest[1]; ++y)
+                for (int x = lowest[0]; x <= highest[0]; ++x) add(block_key_of({x, y, z}, 0));
+        return owners_;
+    }
+
+  private:
+    void add(std::uint64_t block_key) {
+        const auto [at, is_new] = owner_of_block_.try_emplace(block_key, 0);
+        if (is_new) at->second = partition_.owner_of_block(block_key);
+        if (std::find(owners_.begin(), owners_.end(), at->second) == owners_.end())
+            owners_.push_back(at->second);
+    }
+
+    const CellGrid& grid_;
+    const Partition& partition_;
+    std::unordered_map<std::uint64_t, int> owner_of_block_;
+    Cell lowest_{}, highest_{};
+    std::vector<int> owners_;  ///< of the blocks from lowest_ to highest_
+};
 
 }  // namespace
 
 void Halo::choose_cells(const CellGrid& grid, const Partition& partition, std::span<const CellEntry> own) {
     outgoing_.clear();
     std::map<int, std::size_t> outgoing_of_rank;
-    std::unordered_map<std::uint64_t, int> owner_cache;
-    std::vector<int> owners;
+    OwnersWithinReach owners_within_reach(grid, partition);
     const auto send = [&](int rank, const CellEntry& entry, const Image& image) {
         const auto [at, is_new] = outgoing_of_rank.try_emplace(rank, outgoing_.size());
         if (is_new) outgoing_.push_back({rank, {}, {}});
@@ -58,15 +75,13 @@ void Halo::choose_cells(const CellGrid& grid, const Partition& partition, std::s
     for (const CellEntry& entry : own) {
         const Cell cell = cell_of(entry.key);
         if (comm_.size() > 1) {
-            owners_within_reach(grid, partition, cell, owner_cache, owners);
-            for (const int rank : owners)
+            for (const int rank : owners_within_reach(cell))
                 if (rank != comm_.rank()) send(rank, entry, Image{cell, {}, {}});
         }
         if (!grid.has_copies(cell)) continue;
         const std::vector<Image> images = grid.images(cell);
         for (std::size_t k = 1; k < images.size(); ++k) {
-            owners_within_reach(grid, partition, images[k].cell, owner_cache, owners);
-            for (const int rank : owners) send(rank, entry, images[k]);
+            for (const int rank : owners_within_reach(images[k].cell)) send(rank, entry, images[k]);
         }
     }
 }

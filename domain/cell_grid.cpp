@@ -86,9 +86,20 @@ bool CellGrid::has_copies(const Cell& cell) const {
 }
 
 double CellGrid::ladder_radius(double radius) {
-    const double rung = std::ceil(8 * std::log2(radius));
-    const double above = std::exp2(rung / 8);
-    return above < radius ? std::exp2((rung + 1) / 8) : above;
+    // 2^(k/8 - 1), written out: logarithms would put some rungs one too high, and differ between libraries.
+    constexpr std::array<double, 9> rungs{0.5,
+                                          0.5452538663326288,
+                                          0.5946035575013605,
+                                          0.6484197773255048,
+                                          0.7071067811865476,
+                                          0.7711054127039704,
+                                          0.8408964152537145,
+                                          0.9170040432046712,
+                                          1.0};
+    if (!(radius > 0) || !std::isfinite(radius)) return radius;  // for the grid to refuse
+    int exponent = 0;
+    const double fraction = std::frexp(radius, &exponent);  // in [0.5, 1)
+    return std::ldexp(*std::lower_bound(rungs.begin(), rungs.end(), fraction), exponent);
 }
 
 }  // namespace talus

@@ -110,7 +110,8 @@ inline constexpr Field<double> deviatoric_stress{
     symmetric_tensor,
     state,
     owner,
-    "deviatoric stress; in 1D and 2D the missing diagonal makes it traceless (uniaxial, plane strain)"};
+    "deviatoric stress of the uncracked part; in 1D and 2D the missing diagonal makes it traceless "
+    "(uniaxial, plane strain)"};
 inline constexpr Field<double> damage{"damage", "1",   scalar,
                                       state,    owner, "Grady-Kipp damage D: 0 intact, 1 fully cracked"};
 inline constexpr Field<std::uint8_t> body{
@@ -131,6 +132,13 @@ inline constexpr Field<double> specific_power{
     state,
     owner,
     "work of the pair forces on the particle per mass and time, kinetic and internal together"};
+inline constexpr Field<double> viscous_speed{
+    "viscous_speed",
+    "m s-1",
+    scalar,
+    work,
+    owner,
+    "greatest sensitivity of the artificial viscosity to the velocity difference over all partners"};
 inline constexpr Field<double> velocity_gradient{
     "velocity_gradient",
     "s-1",
@@ -162,7 +170,7 @@ inline constexpr Field<double> predicted_stress{
     symmetric_tensor,
     work,
     halo,
-    "deviatoric stress predicted to the time of evaluation, within the strength"};
+    "deviatoric stress predicted to the time of evaluation, within the strength, reduced by damage"};
 inline constexpr Field<double> pressure_gradient{"pressure_gradient",       "Pa m-1", vector, work, halo,
                                                  "gradient of the pressure"};
 inline constexpr Field<double> volume_gradient{

@@ -1,12 +1,15 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <new>
 #include <span>
 #include <vector>
 
 #include "domain/cell_table.hpp"
+#include "domain/lanes.hpp"
 
 namespace talus {
 
@@ -25,6 +28,7 @@ class AlignedValues {
         data_ = new (alignment) double[capacity_];
     }
     double* data() { return data_; }
+    const double* data() const { return data_; }
 
   private:
     static constexpr std::align_val_t alignment{64};
@@ -35,44 +39,55 @@ class AlignedValues {
     std::size_t capacity_ = 0;
 };
 
-/// The interaction partners of one particle: found exactly (|r| < radius, itself excluded), in canonical
-/// order, so that what is summed over them has the same bits on any number of ranks.
+/// The interaction partners of the particles of one cell after another: found exactly (|r| < radius, itself
+/// excluded), in canonical order, so that what is summed over them has the same bits on any number of ranks.
 template <int D>
 class Partners {
   public:
-    /// `position`: D component arrays, own particles and copies; `i` the particle; `limit2(k)` the squared
-    /// radius within which particle k interacts with it [m2].
-    template <class Limit2>
-    void find(const std::array<const double*, D>& position, std::uint32_t i, std::span<const Run> runs,
-              Limit2&& limit2) {
-        std::size_t most = 0;
-        for (const Run& run : runs) most += run.end - run.begin;
-        if (index_.size() < most + 1) index_.resize(most + 1);
-        distance2_.reserve(most + 1);
-        std::array<double, D> centre;
-        for (int d = 0; d < D; ++d) centre[d] = position[d][i];
-        std::uint32_t* index = index_.data();
-        double* excess = distance2_.data();
-        count_ = 0;
+    /// `position`: D component arrays, `h`: smoothing lengths, both of own particles and copies; `range`: no
+    /// pair will be asked for beyond range * h of either particle.
+    Partners(const std::array<const double*, D>& position, const double* h, double range)
+        : position_(position), h_(h), range_(range) {}
+
+    /// Takes up a cell: lists those of the runs' particles (CellTable) that are within reach of the box
+    /// around the cell's particles.
+    void enter(const CellEntry& cell, std::span<const Run> runs) {
+        std::size_t count = 0;
+        double largest = 0;
         for (const Run& run : runs) {
-            const std::uint32_t n = run.end - run.begin;
-#pragma omp simd
-            for (std::uint32_t k = 0; k < n; ++k) {
-                double r2 = 0;
-                for (int d = 0; d < D; ++d) {
-                    const double dx = centre[d] - position[d][run.begin + k];
-                    r2 += dx * dx;
-                }
-                excess[k] = r2 - limit2(run.begin + k);
-            }
-            for (std::uint32_t k = 0; k < n; ++k) {
-                index[count_] = run.begin + k;
-                count_ += (excess[k] < 0) & (run.begin + k != i);
-            }
+            count += run.end - run.begin;
+            largest = std::max(largest, *std::max_element(h_ + run.begin, h_ + run.end));
+        }
+        reserve(count);
+        list_candidates(cell, runs, range_ * largest * (range_ * largest));
+        cell_begin_ = cell.begin;
+        const auto place = std::find(candidates_.begin(), candidates_.end(), cell.begin);
+        cell_place_ = static_cast<std::size_t>(place - candidates_.begin());
+        for (std::size_t k = 0; k < padded(candidate_count_); ++k) {
+            const bool real = k < candidate_count_;
+            if (!real) candidates_[k] = cell.begin;
+            for (int d = 0; d < D; ++d)
+                near_position_[d].data()[k] = real ? position_[d][candidates_[k]] : nowhere;
+            near_h_.data()[k] = h_[candidates_[k]];
         }
     }
 
+    /// Lists the partners of particle i of the cell within the radius `range` * h_i.
+    void find(std::uint32_t i, double range) {
+        const double limit2 = range * h_[i] * (range * h_[i]);
+        find_if_negative(i, [=](std::size_t, const Lanes& r2) { return r2 - limit2; });
+    }
+    /// As find() with the larger of the two smoothing lengths.
+    void find_mutual(std::uint32_t i, double range) {
+        const double h_i = h_[i], *h = near_h_.data();
+        find_if_negative(i, [=](std::size_t k, const Lanes& r2) {
+            const Lanes radius = range * max(load(h + k), Lanes(h_i));
+            return r2 - radius * radius;
+        });
+    }
+
     std::size_t count() const { return count_; }
+    /// The partners; behind them, up to a multiple of lane_count, the last one is repeated.
     std::span<const std::uint32_t> index() const { return {index_.data(), count_}; }
 
     /// Copies one component of a field for all partners to contiguous memory.
@@ -85,8 +100,89 @@ class Partners {
     }
 
   private:
+    static constexpr double nowhere = std::numeric_limits<double>::infinity();
+    static std::size_t padded(std::size_t count) {
+        return (count + lane_count - 1) / lane_count * lane_count;
+    }
+
+    void reserve(std::size_t count) {
+        const std::size_t room = count + 2 * lane_count;
+        if (candidates_.size() >= room) return;
+        for (int d = 0; d < D; ++d) near_position_[d].reserve(room);
+        near_h_.reserve(room);
+        candidates_.resize(room);
+        index_.resize(room);
+    }
+
+    void list_candidates(const CellEntry& cell, std::span<const Run> runs, double reach2) {
+        std::array<double, D> lower, upper;
+        for (int d = 0; d < D; ++d) {
+            const auto [least, greatest] =
+                std::minmax_element(position_[d] + cell.begin, position_[d] + cell.end);
+            lower[d] = *least;
+            upper[d] = *greatest;
+        }
+        candidate_count_ = 0;
+        std::array<std::uint32_t, lane_count> place;
+        for (const Run& run : runs)
+            for (std::uint32_t k = run.begin; k < run.end; k += lane_count) {
+                const std::uint32_t last = run.end - 1;
+                for (std::uint32_t lane = 0; lane < lane_count; ++lane) place[lane] = k + lane;
+                Lanes outside2 = 0;
+                for (int d = 0; d < D; ++d) {
+                    const Lanes x =
+                        k + lane_count <= run.end
+                            ? load(position_[d] + k)
+                            : Lanes([&](auto lane) { return position_[d][std::min(place[lane], last)]; });
+                    const Lanes outside = max(max(lower[d] - x, x - upper[d]), Lanes(0.0));
+                    outside2 += outside * outside;
+                }
+                Lanes excess = outside2 - reach2;
+                if (k + lane_count > run.end) excess = select(first_lanes(run.end - k), excess, Lanes(1.0));
+                candidate_count_ +=
+                    keep_negative(excess, place.data(), candidates_.data() + candidate_count_);
+            }
+    }
+
+    /// Lists the candidates for which excess(k, squared distance) is negative; i itself is out of reach
+    /// meanwhile.
+    template <class Excess>
+    void find_if_negative(std::uint32_t i, Excess&& excess) {
+        const std::size_t own = cell_place_ + (i - cell_begin_);
+        std::array<Lanes, D> centre;
+        std::array<const double*, D> x;
+        for (int d = 0; d < D; ++d) {
+            x[d] = near_position_[d].data();
+            centre[d] = x[d][own];
+        }
+        const double x_own = x[0][own];
+        near_position_[0].data()[own] = nowhere;
+        const std::uint32_t* candidates = candidates_.data();
+        std::uint32_t* index = index_.data();
+        std::size_t count = 0;
+        for (std::size_t k = 0; k < candidate_count_; k += lane_count) {
+            Lanes r2 = 0;
+            for (int d = 0; d < D; ++d) {
+                const Lanes r = centre[d] - load(x[d] + k);
+                r2 += r * r;
+            }
+            count += keep_negative(excess(k, r2), candidates + k, index + count);
+        }
+        near_position_[0].data()[own] = x_own;
+        count_ = count;
+        for (std::size_t k = count; k < padded(count); ++k) index[k] = index[count - 1];
+    }
+
+    std::array<const double*, D> position_;
+    const double* h_;
+    double range_;
+    std::vector<std::uint32_t> candidates_;  ///< for the particles of the cell, in canonical order
+    std::size_t candidate_count_ = 0;
+    std::array<AlignedValues, D> near_position_;  ///< of the candidates
+    AlignedValues near_h_;
+    std::uint32_t cell_begin_ = 0;
+    std::size_t cell_place_ = 0;  ///< of the cell's first particle among the candidates
     std::vector<std::uint32_t> index_;
-    AlignedValues distance2_;
     std::size_t count_ = 0;
 };
 

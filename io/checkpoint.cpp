@@ -30,13 +30,30 @@ std::int64_t step_of(const std::filesystem::path& file) {
     return failure == std::errc() && end == last ? step : -1;
 }
 
-/// Removes all but the newest checkpoints, and what interrupted writers left.
-void remove_old(const std::filesystem::path& directory) {
-    const auto files = list_checkpoints(directory);
-    for (std::size_t k = kept; k < files.size(); ++k) std::filesystem::remove(files[k]);
-    for (const auto& entry : std::filesystem::directory_iterator(directory)) {
-        const std::filesystem::path inner = entry.path().stem();
-        if (entry.path().extension() == ".tmp" && step_of(inner) >= 0) std::filesystem::remove(entry.path());
+constexpr std::string_view put_aside = ".superseded";
+
+/// Removes the files of the folder that are named as a checkpoint with `ending`.
+void remove_ending(const std::filesystem::path& directory, std::string_view ending) {
+    std::vector<std::filesystem::path> found;
+    for (const auto& entry : std::filesystem::directory_iterator(directory))
+        if (entry.path().extension() == ending && step_of(entry.path().stem()) >= 0)
+            found.push_back(entry.path());
+    for (const std::filesystem::path& file : found) std::filesystem::remove(file);
+}
+
+/// Removes all but the newest checkpoints up to `step`, and what interrupted writers left. Later steps belong
+/// to a run that was given up for this one: those are put aside, and what was put aside before goes.
+void remove_old(const std::filesystem::path& directory, std::uint64_t step) {
+    remove_ending(directory, ".tmp");
+    const std::vector<std::filesystem::path> files = list_checkpoints(directory);
+    const auto is_later = [&](const auto& file) { return step_of(file) > static_cast<std::int64_t>(step); };
+    if (std::any_of(files.begin(), files.end(), is_later)) remove_ending(directory, put_aside);
+    std::size_t seen = 0;
+    for (const std::filesystem::path& file : files) {
+        if (is_later(file))
+            std::filesystem::rename(file, fmt::format("{}{}", file.string(), put_aside));
+        else if (++seen > kept)
+            std::filesystem::remove(file);
     }
 }
 
@@ -155,7 +172,7 @@ void write_checkpoint(const Communicator& comm, const std::filesystem::path& dir
     }
     plan.describe = [&](hid_t file) { describe(file, state, sets, orders); };
     write_particle_file(comm, plan);
-    agree_on_root(comm, [&] { remove_old(directory); });
+    agree_on_root(comm, [&] { remove_old(directory, state.step); });
 }
 
 RunState read_checkpoint(const Communicator& comm, const std::filesystem::path& file,

@@ -13,7 +13,8 @@ namespace talus {
 /// Writes `directory`/checkpoint_<step>.h5, complete and durable, or throws AgreedError on every rank and
 /// leaves what was there untouched. The particle data are written in order of id, so that their bytes depend
 /// neither on the number of ranks nor on the decomposition. Once the new file has been read back and synced,
-/// all but the newest two checkpoints are removed. Collective.
+/// it and the newest before it are kept, older ones are removed, and those of later steps (of a run that was
+/// given up for this one) get the suffix .superseded. Collective.
 void write_checkpoint(const Communicator& comm, const std::filesystem::path& directory, const RunState& state,
                       const std::vector<const ParticleSet*>& sets);
 

@@ -53,14 +53,9 @@ void add_rows(std::span<const std::byte> rows, const hdf5::Extent& extent, Extre
     const std::size_t size = size_of(extent.type);
     for (std::size_t at = 0; at < rows.size(); at += extent.row_bytes()) {
         double value = value_at(extent.type, rows.data() + at);
-        if (extent.components > 1) {
-            value *= value;
-            for (std::size_t c = 1; c < extent.components; ++c) {
-                const double other = value_at(extent.type, rows.data() + at + c * size);
-                value += other * other;
-            }
-            value = std::sqrt(value);
-        }
+        for (std::size_t c = 1; c < extent.components; ++c)
+            value = std::hypot(value, value_at(extent.type, rows.data() + at + c * size));
+        if (extent.components > 1) value = std::abs(value);
         if (!std::isfinite(value)) {
             ++extremes.not_finite;
             continue;

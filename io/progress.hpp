@@ -73,8 +73,11 @@ class PhaseTimer {
     /// `const auto timing = timer.start("density");` Names are literals, compared by content. Phases within
     /// phases count twice.
     [[nodiscard]] Scope start(std::string_view phase) { return Scope(*this, index_of(phase)); }
-    /// Counts time measured elsewhere as one call of a phase.
-    void add(std::string_view phase, double seconds) { add(index_of(phase), seconds); }
+    /// Counts time measured elsewhere.
+    void add(std::string_view phase, double seconds, std::uint64_t calls) {
+        phases_[index_of(phase)].seconds += seconds;
+        phases_[index_of(phase)].calls += calls;
+    }
     /// Seconds of this rank, 0 for an unknown phase.
     double seconds(std::string_view phase) const;
     void reset() { phases_.clear(); }

@@ -58,7 +58,9 @@ void check_quick(SceneState& state) {
 
 void write_resolved(const ResolvedTable& table, const std::string& path, std::string& text) {
     for (const auto& [key, value] : table.entries) text += fmt::format("{} = {}\n", key, value);
-    for (const auto& [name, child] : table.tables) {
+    for (std::size_t k = 0; k < table.tables.size(); ++k) {
+        const std::string& name = table.names[k];
+        const ResolvedTable& child = table.tables[k];
         const auto bracket = name.find('[');
         const std::string full = joined_path(path, name.substr(0, bracket));
         if (bracket != std::string::npos)
@@ -81,10 +83,13 @@ void SceneState::resolve(std::string_view path, std::string_view key, std::strin
                          std::string_view comment) {
     ResolvedTable* table = &resolved;
     for (const std::string& part : path.empty() ? std::vector<std::string>() : split_path(path)) {
-        const auto same = [&](const auto& child) { return child.first == part; };
-        auto child = std::find_if(table->tables.begin(), table->tables.end(), same);
-        if (child == table->tables.end()) child = table->tables.insert(child, {part, {}});
-        table = &child->second;
+        const auto found = std::find(table->names.begin(), table->names.end(), part);
+        const auto k = static_cast<std::size_t>(found - table->names.begin());
+        if (found == table->names.end()) {
+            table->names.push_back(part);
+            table->tables.emplace_back();
+        }
+        table = &table->tables[k];
     }
     if (!comment.empty()) value += fmt::format("  # {}", comment);
     for (auto& [known_key, known_value] : table->entries)

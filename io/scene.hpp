@@ -62,7 +62,7 @@ class Section {
     /// The tables of the array of tables `key`, none if absent. A single table counts as an array of one.
     std::vector<Section> sections(std::string_view key) const;
 
-    /// Records a fault the caller found, at the line of `key` (or of the table if the key is absent).
+    /// Records a fault the caller found, at the line of `key`, or of the table if the key is absent or empty.
     void error(std::string_view key, std::string_view message) const;
 
   private:

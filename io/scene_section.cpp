@@ -70,13 +70,14 @@ void Section::missing(std::string_view key, std::string_view wanted) const {
 }
 
 void Section::error(std::string_view key, std::string_view message) const {
-    if (const SceneNode* found = find(key)) {
+    if (const SceneNode* found = key.empty() ? nullptr : find(key)) {
         fault(key, *found, message);
         return;
     }
     const std::string place = node_ == nullptr ? state_->file.string() : node_->origin;
+    const std::string what = key.empty() ? path_ : path_of(key);
     state_->faults.push_back(
-        {node_ == nullptr ? 0 : node_->order, fmt::format("{}: {} ({})", place, path_of(key), message)});
+        {node_ == nullptr ? 0 : node_->order, fmt::format("{}: {} ({})", place, what, message)});
 }
 
 bool Section::has(std::string_view key) const { return find(key) != nullptr; }

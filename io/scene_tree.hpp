@@ -43,7 +43,8 @@ struct SceneFault {
 /// What was read, in order, as a tree of tables, for Scene::resolved().
 struct ResolvedTable {
     std::vector<std::pair<std::string, std::string>> entries;  ///< key, "value  # unit, default"
-    std::vector<std::pair<std::string, ResolvedTable>> tables;
+    std::vector<std::string> names;                            ///< of the tables
+    std::vector<ResolvedTable> tables;
 };
 
 struct SceneState {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <string_view>
 
 namespace talus {
@@ -33,6 +34,7 @@ class Phases {
         if (running_)
             seconds_[static_cast<std::size_t>(current_)] +=
                 std::chrono::duration<double>(now - since_).count();
+        if (!running_ || phase != current_) ++entries_[static_cast<std::size_t>(phase)];
         current_ = phase;
         since_ = now;
         running_ = true;
@@ -43,7 +45,12 @@ class Phases {
     }
     const std::array<double, static_cast<std::size_t>(Phase::count)>& seconds() const { return seconds_; }
 
+    const std::array<std::uint64_t, static_cast<std::size_t>(Phase::count)>& entries() const {
+        return entries_;
+    }
+
   private:
+    std::array<std::uint64_t, static_cast<std::size_t>(Phase::count)> entries_{};
     std::array<double, static_cast<std::size_t>(Phase::count)> seconds_{};
     Phase current_ = Phase::motion;
     Clock::time_point since_{};

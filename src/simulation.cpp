@@ -13,7 +13,7 @@
 namespace talus {
 
 namespace {
-constexpr int cells_per_radius = 2;
+constexpr int cells_per_radius = 1;
 
 bool has_strength(const Setup& setup) {
     return std::any_of(setup.materials.begin(), setup.materials.end(),
@@ -40,6 +40,7 @@ void add_fields(ParticleSet& particles, const Setup& setup) {
         particles.add(field::pressure_gradient);
         particles.add(field::volume_gradient);
     }
+    if (sph.formulation == sph::Formulation::standard) particles.add(field::viscous_speed);
     if (sph.uses(sph::Interpolation::quintic)) particles.add(field::volume_curvature);
     if (has_strength(setup)) {
         particles.add(field::deviatoric_stress);
@@ -149,10 +150,6 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     if (settings.density == sph::DensityMethod::summation || settings.variable_smoothing_length) {
         overlapped(Phase::density, {&field::position, &field::mass},
                    [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });
-        if (settings.variable_smoothing_length) {
-            const auto next = particles_.own(field::next_smoothing_length);
-            std::copy(next.begin(), next.end(), particles_.data(field::smoothing_length));
-        }
     }
     phases_.enter(Phase::material);
     material_response(damage_time);
@@ -172,22 +169,24 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
         overlapped(Phase::forces,
                    {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
                     &field::volume_curvature},
-                   [&](Cells cells) {
-                       sph::godunov_pass(particles_, table, cells, settings, time_step_, pass_count_);
-                   });
+                   [&](Cells cells) { sph::godunov_pass(particles_, table, cells, settings, pass_count_); });
     else
         overlapped(
             Phase::forces,
             {&field::position, &field::mass, &field::smoothing_length, &field::predicted_velocity,
              &field::predicted_density, &field::pressure, &field::sound_speed, &field::predicted_stress},
             [&](Cells cells) { sph::standard_pass(particles_, table, cells, settings, pass_count_); });
+    if (settings.variable_smoothing_length) {  // only now: cells and halo were made for the old ones
+        const auto next = particles_.own(field::next_smoothing_length);
+        std::copy(next.begin(), next.end(), particles_.data(field::smoothing_length));
+    }
     hold_bodies();
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
 }
 
 /// Pressure and sound speed, the limit of strength, growth of damage over `damage_time`, and what damage
-/// leaves of tension.
+/// leaves of tension and shear.
 void Simulation::material_response(double damage_time) {
     damage_limit_ = std::numeric_limits<double>::infinity();
     const auto bodies = std::as_const(particles_).own(field::body);
@@ -219,10 +218,9 @@ void Simulation::material_response(double damage_time) {
         grow_damage(growth, state, damage_time, particles_.own(field::damage), bodies, body);
         damage_limit_ = std::min(
             damage_limit_, damage_time_step(growth, state, setup_.largest_damage_step, damage, bodies, body));
+        relieve_stress(material.strength, damage, pressure,
+                       stress_columns(particles_, field::predicted_stress), bodies, body);
     }
-    if (!cracks) return;
-    for (std::size_t i = 0; i < particles_.size(); ++i)
-        if (pressure[i] < 0) pressure[i] *= 1 - damage[i];
 }
 
 void Simulation::hold_bodies() {

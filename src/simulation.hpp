@@ -65,10 +65,16 @@ class Simulation {
     const Setup& setup() const { return setup_; }
     const Communicator& comm() const { return comm_; }
     Decomposition& decomposition() { return decomposition_; }
+    const Decomposition& decomposition() const { return decomposition_; }
     std::uint64_t total_particles() const { return decomposition_.total_particles(); }
     /// Pairs evaluated by this rank in the force pass since the start.
     std::uint64_t pairs() const { return pairs_; }
     Phases& phases() { return phases_; }
+    /// Starts counting pairs and time anew.
+    void reset_counters() {
+        pairs_ = 0;
+        phases_ = {};
+    }
     /// What set the next time step, as far as this rank knows.
     const sph::StepLimit& step_limit() const { return limit_; }
     /// Largest interaction radius [m], over all particles. Collective.

@@ -15,10 +15,16 @@ inline double thermal_softening(double internal_energy, double melt_energy) {
     return std::clamp(1 - internal_energy / melt_energy, 0.0, 1.0);
 }
 
+// Damage takes shear from rock in one of two ways, `damage_scales_stress`. True: cracks carry nothing, the
+// stress is (1 - D) S in all, with S that of the uncracked part; W. Benz, E. Asphaug, Icarus 107 (1994) 98.
+// False: only the strength falls, towards friction on the cracks; M. Jutzi, Planet. Space Sci. 107 (2015) 3;
+// K. Sugiura, H. Kobayashi, S. Inutsuka, Astron. Astrophys. 620 (2018) A167.
+
 /// Yield stress independent of the pressure, reduced by heat and damage: sqrt(3 J2) <= Y_M (1 - u/u_melt)
 /// (1 - D). W. Benz, E. Asphaug, Comput. Phys. Commun. 87 (1995) 253, with the radial return of
 /// L. D. Libersky, A. G. Petschek (1991): S is scaled by Y/sqrt(3 J2), not by its square.
 struct VonMises {
+    static constexpr bool damage_scales_stress = true;
     double yield_stress;                                           ///< Y_M in simple tension [Pa]
     double melt_energy = std::numeric_limits<double>::infinity();  ///< u_melt [J/kg]
 
@@ -35,6 +41,7 @@ struct VonMises {
 /// H. J. Melosh, B. A. Ivanov, Meteorit. Planet. Sci. 39 (2004) 217; M. Jutzi, Planet. Space Sci.
 /// 107 (2015) 3 (eq. 6 as printed has D - 1 for 1 - D).
 struct Lundborg {
+    static constexpr bool damage_scales_stress = false;
     double cohesion;          ///< Y_0, strength at P = 0 [Pa]
     double limit;             ///< Y_M, strength at P -> infinity [Pa], at least Y_0
     double friction_intact;   ///< mu_i [1]
@@ -50,8 +57,9 @@ struct Lundborg {
     }
 };
 
-/// Purely elastic: the deviatoric stress is never limited.
+/// Purely elastic: the deviatoric stress of the uncracked part is never limited.
 struct NoStrengthLimit {
+    static constexpr bool damage_scales_stress = true;
     double shear_strength(double, double, double) const { return std::numeric_limits<double>::infinity(); }
 };
 
@@ -71,8 +79,15 @@ struct StrengthState {
     std::span<const double> damage;           ///< [1], or empty
 };
 
-/// Brings the deviatoric stress of all particles with body == which within the strength, in place.
+/// Brings the deviatoric stress of all particles with body == which within the strength, in place. Where
+/// damage scales the stress, it is that of the uncracked part, within the strength of intact matter.
 void limit_stress(const Strength& strength, const StrengthState& state, StressColumns<double> stress,
                   std::span<const std::uint8_t> body, std::uint8_t which);
+
+/// What cracked matter carries of the stress of its uncracked part, for all particles with body == which, in
+/// place: (1 - D) P if P < 0, and (1 - D) S if damage scales the stress. After limits and crack growth, which
+/// need the stress of the uncracked part.
+void relieve_stress(const Strength& strength, std::span<const double> damage, std::span<double> pressure,
+                    StressColumns<double> stress, std::span<const std::uint8_t> body, std::uint8_t which);
 
 }  // namespace talus

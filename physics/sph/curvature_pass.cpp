@@ -13,11 +13,12 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Gaus
     const double *mass = particles.data(field::mass), *density = particles.data(field::predicted_density);
     const double* smoothing_length = particles.data(field::smoothing_length);
     const auto curvature = components_to_write<symmetric_count<D>>(particles, field::volume_curvature);
-    Partners<D> partners;
+    Partners<D> partners(position, smoothing_length, kernel.support());
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+        partners.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            const double range = kernel.support() * smoothing_length[i], inverse_h = 1 / smoothing_length[i];
-            partners.find(position, i, runs, [=](std::uint32_t) { return range * range; });
+            const double inverse_h = 1 / smoothing_length[i];
+            partners.find(i, kernel.support());
             std::array<double, symmetric_count<D>> sum{};
             for (const std::uint32_t j : partners.index()) {
                 std::array<double, D> r;

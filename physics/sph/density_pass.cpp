@@ -11,14 +11,17 @@ namespace {
 template <int D, class Kernel>
 class DensitySum {
   public:
-    DensitySum(const ParticleSet& particles, const Kernel& kernel)
+    DensitySum(const ParticleSet& particles, const Kernel& kernel, double widest)
         : kernel_(kernel),
           position_(components<D>(particles, field::position)),
-          mass_(particles.data(field::mass)) {}
+          mass_(particles.data(field::mass)),
+          h_(particles.data(field::smoothing_length)),
+          partners_(position_, h_, kernel.support() * widest) {}
 
-    double operator()(std::uint32_t i, std::span<const Run> runs, double h) {
-        const double range = kernel_.support() * h, inverse_h = 1 / h;
-        partners_.find(position_, i, runs, [=](std::uint32_t) { return range * range; });
+    void enter(const CellEntry& cell, std::span<const Run> runs) { partners_.enter(cell, runs); }
+    double operator()(std::uint32_t i, double widening) {
+        const double inverse_h = 1 / (widening * h_[i]);
+        partners_.find(i, kernel_.support() * widening);
         x_.gather(partners_, position_);
         partners_.gather(mass_, m_);
         const auto x = x_.data();
@@ -33,13 +36,13 @@ class DensitySum {
             for (int d = 0; d < D; ++d) r2 += (x_i[d] - x[d][k]) * (x_i[d] - x[d][k]);
             total += m[k] * kernel.value(r2, inverse_h);
         }
-        return total + mass_[i] * kernel_.value(0, inverse_h);
+        return total + mass_[i] * kernel_.value(0.0, inverse_h);
     }
 
   private:
     const Kernel kernel_;
     std::array<const double*, D> position_;
-    const double* mass_;
+    const double *mass_, *h_;
     Partners<D> partners_;
     PartnerValues<D> x_;
     AlignedValues m_;
@@ -48,17 +51,18 @@ class DensitySum {
 template <int D, class Kernel>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
          const Kernel& kernel) {
-    DensitySum<D, Kernel> sum(particles, kernel);
+    const double widening = settings.smoothing_widening;
+    DensitySum<D, Kernel> sum(particles, kernel, std::max(1.0, widening));
     const double* mass = particles.data(field::mass);
-    const double* h = particles.data(field::smoothing_length);
     double* density = particles.data(field::predicted_density);
     double* next_h =
         settings.variable_smoothing_length ? particles.data(field::next_smoothing_length) : nullptr;
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+        sum.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            if (settings.density == DensityMethod::summation) density[i] = sum(i, runs, h[i]);
+            if (settings.density == DensityMethod::summation) density[i] = sum(i, 1);
             if (!next_h) continue;
-            const double smoothed = sum(i, runs, settings.smoothing_widening * h[i]);
+            const double smoothed = sum(i, widening);
             next_h[i] = settings.eta * std::pow(mass[i] / smoothed, 1.0 / D);
             if (settings.largest_smoothing_length > 0)
                 next_h[i] = std::min(next_h[i], settings.largest_smoothing_length);

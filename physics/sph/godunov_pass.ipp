@@ -5,8 +5,8 @@ namespace talus::sph {
 
 template <int D, class Options>
 void run_with(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-              double time_step, PassCount& count) {
-    GodunovPass<D, Options> pass(particles, settings, time_step);
+              PassCount& count) {
+    GodunovPass<D, Options> pass(particles, table, which, settings);
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
         const std::uint64_t pairs = pass.visit(cell, runs);
         count.pairs += pairs;
@@ -16,20 +16,20 @@ void run_with(ParticleSet& particles, const CellTable& table, Cells which, const
 
 template <int D>
 void run_godunov(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-                 double time_step, PassCount& count) {
-    const bool strength = particles.has(field::predicted_stress), bodies = settings.several_bodies;
+                 PassCount& count) {
+    const bool strength = particles.has(field::predicted_stress);
     const auto run = [&]<class Options>(Options) {
-        run_with<D, Options>(particles, table, which, settings, time_step, count);
+        run_with<D, Options>(particles, table, which, settings, count);
     };
     const auto with_h = [&]<bool variable>(std::bool_constant<variable>) {
-        if (settings.uses(
-                Interpolation::quintic)) {  // bodies and stress are rare here: one instantiation serves all
-            if (strength) return run(GodunovOptions<true, variable, true, false>{});
-            return run(GodunovOptions<false, variable, true, false>{});
+        // Where bodies change little in the cost, one instantiation serves one or several.
+        if (settings.uses(Interpolation::quintic)) {
+            if (strength) return run(GodunovOptions<true, variable, true, true>{});
+            return run(GodunovOptions<false, variable, true, true>{});
         }
-        if (strength && bodies) return run(GodunovOptions<true, variable, false, true>{});
-        if (strength) return run(GodunovOptions<true, variable, false, false>{});
-        return run(GodunovOptions<false, variable, false, false>{});
+        if (!strength) return run(GodunovOptions<false, variable, false, true>{});
+        if (settings.several_bodies) return run(GodunovOptions<true, variable, false, true>{});
+        return run(GodunovOptions<true, variable, false, false>{});
     };
     if (!settings.uniform_smoothing_length)
         with_h(std::true_type{});

@@ -1,5 +1,5 @@
 #include "physics/sph/godunov_pass.ipp"
 
 namespace talus::sph {
-template void run_godunov<2>(ParticleSet&, const CellTable&, Cells, const Settings&, double, PassCount&);
+template void run_godunov<2>(ParticleSet&, const CellTable&, Cells, const Settings&, PassCount&);
 }  // namespace talus::sph

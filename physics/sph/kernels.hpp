@@ -3,15 +3,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "domain/lanes.hpp"
+
 namespace talus::sph {
 
-/// exp(-x) for 0 <= x <= 10 to 1e-14, of additions and multiplications alone so that pair loops vectorise:
-/// a polynomial for exp(-x/32), squared five times.
-inline double exp_minus(double x) {
+/// exp(-x) for 0 <= x <= 10 to 1e-14 (1e-11 up to 16), of additions and multiplications alone so that lanes
+/// can share it: a polynomial for exp(-x/32), squared five times.
+template <class Real>
+Real exp_minus(Real x) {
     constexpr double centre = 0.15625;
-    const double z = centre - x * (1.0 / 32);
-    double p = 1.0 / 3628800;
-    p = p * z + 1.0 / 362880;
+    const Real z = centre - x * (1.0 / 32);
+    Real p = z * (1.0 / 3628800) + 1.0 / 362880;
     p = p * z + 1.0 / 40320;
     p = p * z + 1.0 / 5040;
     p = p * z + 1.0 / 720;
@@ -30,7 +32,7 @@ inline double exp_minus(double x) {
     return p * p;
 }
 
-/// A kernel W(r, h) in D dimensions has a support radius support() * h and gives
+/// A kernel W(r, h) in D dimensions has a support radius support() * h and gives, for doubles or lanes,
 ///   value(r2, inverse_h):  W [1/m^D]
 ///   factor(r2, inverse_h): (1/r) dW/dr [1/m^(D+2)], so that grad_i W_ij = factor * (x_i - x_j).
 /// r2 is the squared distance [m2]; outside the support both are 0.
@@ -57,17 +59,22 @@ struct Gaussian {
     }
 
     double support() const { return cutoff; }
-    double value(double r2, double inverse_h) const {
-        double scale = norm * inverse_h;
+    template <class Real>
+    Real value(Real r2, Real inverse_h) const {
+        Real scale = norm * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
-        return scale * (exp_minus(std::min(r2 * inverse_h * inverse_h, cutoff * cutoff)) - edge);
+        using std::min;
+        const Real x = min(r2 * inverse_h * inverse_h, Real(cutoff * cutoff));
+        return scale * (exp_minus(x) - edge);
     }
-    double factor(double r2, double inverse_h) const {
-        const double inverse_h2 = inverse_h * inverse_h;
-        double scale = -2 * norm * inverse_h2 * inverse_h;
+    template <class Real>
+    Real factor(Real r2, Real inverse_h) const {
+        const Real inverse_h2 = inverse_h * inverse_h;
+        Real scale = -2 * norm * inverse_h2 * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
-        const double x = r2 * inverse_h2, end = cutoff * cutoff;
-        return x < end ? scale * exp_minus(std::min(x, end)) : 0.0;
+        using std::min;
+        const Real x = r2 * inverse_h2, end = Real(cutoff * cutoff);
+        return select(x < end, scale * exp_minus(min(x, end)), Real(0.0));
     }
 
     double cutoff, edge, norm;
@@ -77,15 +84,19 @@ struct Gaussian {
 template <int D, class Derived>
 struct CompactKernel {
     double support() const { return 2; }
-    double value(double r2, double inverse_h) const {
-        const double q = std::sqrt(r2) * inverse_h;
-        double scale = Derived::norm * inverse_h;
+    template <class Real>
+    Real value(Real r2, Real inverse_h) const {
+        using std::sqrt;
+        const Real q = sqrt(r2) * inverse_h;
+        Real scale = Derived::norm * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
         return scale * Derived::shape(q);
     }
-    double factor(double r2, double inverse_h) const {
-        const double q = std::sqrt(r2) * inverse_h;
-        double scale = Derived::norm * inverse_h * inverse_h * inverse_h;
+    template <class Real>
+    Real factor(Real r2, Real inverse_h) const {
+        using std::sqrt;
+        const Real q = sqrt(r2) * inverse_h;
+        Real scale = Derived::norm * inverse_h * inverse_h * inverse_h;
         for (int d = 1; d < D; ++d) scale *= inverse_h;
         return scale * Derived::slope(q);
     }
@@ -97,14 +108,18 @@ struct CubicSpline : CompactKernel<D, CubicSpline<D>> {
     static constexpr double norm = D == 1   ? 2.0 / 3
                                    : D == 2 ? 10 / (7 * std::numbers::pi)
                                             : 1 / std::numbers::pi;
-    static double shape(double q) {
-        const double outer = std::max(2 - q, 0.0), inner = std::max(1 - q, 0.0);
+    template <class Real>
+    static Real shape(Real q) {
+        using std::max;
+        const Real outer = max(2 - q, Real(0.0)), inner = max(1 - q, Real(0.0));
         return 0.25 * outer * outer * outer - inner * inner * inner;
     }
-    static double slope(double q) {
-        const double outer = std::max(2 - q, 0.0);
-        const double far = -0.75 * outer * outer / std::max(q, 1e-300);
-        return q < 1 ? -3 + 2.25 * q : far;
+    template <class Real>
+    static Real slope(Real q) {
+        using std::max;
+        const Real outer = max(2 - q, Real(0.0));
+        const Real far = -0.75 * outer * outer / max(q, Real(1e-300));
+        return select(q < 1, -3 + 2.25 * q, far);
     }
 };
 
@@ -115,12 +130,16 @@ struct WendlandC2 : CompactKernel<D, WendlandC2<D>> {
     static constexpr double norm = D == 1   ? 5.0 / 8
                                    : D == 2 ? 7 / (4 * std::numbers::pi)
                                             : 21 / (16 * std::numbers::pi);
-    static double shape(double q) {
-        const double x = std::max(1 - 0.5 * q, 0.0), x3 = x * x * x;
+    template <class Real>
+    static Real shape(Real q) {
+        using std::max;
+        const Real x = max(1 - 0.5 * q, Real(0.0)), x3 = x * x * x;
         return D == 1 ? x3 * (1 + 1.5 * q) : x3 * x * (1 + 2 * q);
     }
-    static double slope(double q) {
-        const double x = std::max(1 - 0.5 * q, 0.0);
+    template <class Real>
+    static Real slope(Real q) {
+        using std::max;
+        const Real x = max(1 - 0.5 * q, Real(0.0));
         return D == 1 ? -3 * x * x : -5 * x * x * x;
     }
 };
@@ -130,12 +149,16 @@ struct WendlandC4 : CompactKernel<D, WendlandC4<D>> {
     static constexpr double norm = D == 1   ? 3.0 / 4
                                    : D == 2 ? 9 / (4 * std::numbers::pi)
                                             : 495 / (256 * std::numbers::pi);
-    static double shape(double q) {
-        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+    template <class Real>
+    static Real shape(Real q) {
+        using std::max;
+        const Real x = max(1 - 0.5 * q, Real(0.0)), x2 = x * x, x4 = x2 * x2;
         return D == 1 ? x4 * x * (1 + 2.5 * q + 2 * q * q) : x4 * x2 * (1 + 3 * q + 35.0 / 12 * q * q);
     }
-    static double slope(double q) {
-        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+    template <class Real>
+    static Real slope(Real q) {
+        using std::max;
+        const Real x = max(1 - 0.5 * q, Real(0.0)), x2 = x * x, x4 = x2 * x2;
         return D == 1 ? -3.5 * x4 * (1 + 2 * q) : -14.0 / 3 * x4 * x * (1 + 2.5 * q);
     }
 };
@@ -145,13 +168,17 @@ struct WendlandC6 : CompactKernel<D, WendlandC6<D>> {
     static constexpr double norm = D == 1   ? 55.0 / 64
                                    : D == 2 ? 78 / (28 * std::numbers::pi)
                                             : 1365 / (512 * std::numbers::pi);
-    static double shape(double q) {
-        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+    template <class Real>
+    static Real shape(Real q) {
+        using std::max;
+        const Real x = max(1 - 0.5 * q, Real(0.0)), x2 = x * x, x4 = x2 * x2;
         return D == 1 ? x4 * x2 * x * (1 + 3.5 * q + 19.0 / 4 * q * q + 21.0 / 8 * q * q * q)
                       : x4 * x4 * (1 + 4 * q + 25.0 / 4 * q * q + 4 * q * q * q);
     }
-    static double slope(double q) {
-        const double x = std::max(1 - 0.5 * q, 0.0), x2 = x * x, x4 = x2 * x2;
+    template <class Real>
+    static Real slope(Real q) {
+        using std::max;
+        const Real x = max(1 - 0.5 * q, Real(0.0)), x2 = x * x, x4 = x2 * x2;
         return D == 1 ? -0.75 * x4 * x2 * (6 + 18 * q + 17.5 * q * q)
                       : -5.5 * x4 * x2 * x * (1 + 3.5 * q + 4 * q * q);
     }

@@ -106,14 +106,15 @@ StepLimit stable_step(const ParticleSet& particles, std::span<const double> shea
     const bool has_gradient = particles.has(field::velocity_gradient);
     std::array<const double*, D * D> gradient{};
     if (has_gradient) gradient = components<D * D>(particles, field::velocity_gradient);
-    const double viscous = settings.formulation == Formulation::standard ? 0.6 * settings.viscosity_alpha : 0;
+    const double* viscous_speed =
+        settings.formulation == Formulation::standard ? particles.data(field::viscous_speed) : nullptr;
     double courant = std::numeric_limits<double>::infinity(), accelerated = courant;
     std::size_t courant_at = 0, accelerated_at = 0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         double acceleration2 = 0;
         for (int d = 0; d < D; ++d) acceleration2 += a[d][i] * a[d][i];
         const double elastic = shear_moduli[body[i]] > 0 ? 4.0 / 3 * shear_moduli[body[i]] / density[i] : 0;
-        const double speed = std::sqrt(c[i] * c[i] + elastic) * (1 + viscous) +
+        const double speed = std::sqrt(c[i] * c[i] + elastic) + (viscous_speed ? 0.6 * viscous_speed[i] : 0) +
                              (has_gradient ? h[i] * std::abs(divergence<D>(gradient, i)) : 0);
         const double by_speed = h[i] / speed, by_acceleration = std::sqrt(h[i] / std::sqrt(acceleration2));
         if (by_speed < courant) {

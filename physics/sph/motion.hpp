@@ -29,8 +29,9 @@ struct StepLimit {
 };
 
 /// Longest stable step over the own particles: Courant's criterion with the longitudinal elastic sound speed,
-/// dt = C h/(c_l + h |div v|), and the acceleration's, dt = C sqrt(h/|a|).
-/// J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, section 10.3.
+/// dt = C h/(c_l + 0.6 max(alpha c - 2 beta mu) + h |div v|), the second term (standard SPH only) from the
+/// slope of the viscosity over approaching partners, and the acceleration's, dt = C sqrt(h/|a|). J. J.
+/// Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, section 10.3.
 StepLimit stable_time_step(const ParticleSet& particles, std::span<const double> shear_moduli,
                            const Settings& settings);
 

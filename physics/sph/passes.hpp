@@ -35,10 +35,11 @@ void gradient_pass(ParticleSet& particles, const CellTable& table, Cells which, 
 void curvature_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
 
 /// Acceleration and specific_power of Godunov SPH: K. Sugiura, S. Inutsuka, J. Comput. Phys. 308 (2016) 171,
-/// eq. 55, and 333 (2017) 78, eqs 32-34, with V_ij^2 by settings. `time_step` centres the Riemann states in
-/// time [s]. Reads every halo field of partners.
+/// eq. 55, and 333 (2017) 78, eqs 32-34, with V_ij^2 by settings.
+/// Riemann states are not advanced in time: the leapfrog centres forces already. Reads every halo field of
+/// partners.
 void godunov_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-                  double time_step, PassCount& count);
+                  PassCount& count);
 
 /// Acceleration and specific_power of standard SPH with Monaghan's artificial viscosity.
 /// J. J. Monaghan, Rep. Prog. Phys. 68 (2005) 1703, eqs 3.3, 4.2; energy in the pairwise compatible form.

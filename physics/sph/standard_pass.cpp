@@ -15,7 +15,9 @@ class StandardPass {
           position_(components<D>(particles, field::position)),
           velocity_(components<D>(particles, field::predicted_velocity)),
           acceleration_(components_to_write<D>(particles, field::acceleration)),
-          power_(particles.data(field::specific_power)) {
+          power_(particles.data(field::specific_power)),
+          viscous_speed_(particles.data(field::viscous_speed)),
+          partners_(position_, particles.data(field::smoothing_length), kernel.support()) {
         scalars_ = {particles.data(field::mass), particles.data(field::predicted_density),
                     particles.data(field::pressure), particles.data(field::sound_speed),
                     particles.data(field::smoothing_length)};
@@ -24,13 +26,9 @@ class StandardPass {
 
     std::uint64_t visit(const CellEntry& cell, std::span<const Run> runs) {
         std::uint64_t pairs = 0;
+        partners_.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            const double* h = scalars_[smoothing_length];
-            const double support = kernel_.support(), h_i = h[i];
-            partners_.find(position_, i, runs, [=](std::uint32_t k) {
-                const double larger = support * std::max(h_i, h[k]);
-                return larger * larger;
-            });
+            partners_.find_mutual(i, kernel_.support());
             x_.gather(partners_, position_);
             v_.gather(partners_, velocity_);
             values_.gather(partners_, scalars_);
@@ -46,7 +44,9 @@ class StandardPass {
 
     void evaluate(std::uint32_t i) {
         const std::size_t n = partners_.count();
-        const auto x = x_.data(), v = v_.data(), values = values_.data(), s = stresses_.data();
+        const auto x = x_.data(), v = v_.data();
+        const auto values = values_.data();
+        const auto s = stresses_.data();
         const Kernel kernel = kernel_;
         const double alpha = settings_.viscosity_alpha, beta = settings_.viscosity_beta;
         const double support2 = kernel.support() * kernel.support();
@@ -62,11 +62,12 @@ class StandardPass {
         if constexpr (strength)
             for (int c = 0; c < symmetric_count<D>; ++c) s_i[c] = stress_[c][i] * inverse_rho2_i;
         std::array<double*, D + 1> terms;
+        double viscous_speed = 0;
         for (int d = 0; d <= D; ++d) {
             terms_[d].reserve(n);
             terms[d] = terms_[d].data();
         }
-#pragma omp simd
+#pragma omp simd reduction(max : viscous_speed)
         for (std::size_t k = 0; k < n; ++k) {
             std::array<double, D> r;
             double r2 = 0, approach = 0;
@@ -85,18 +86,22 @@ class StandardPass {
             const double mu = std::min(h * approach / (r2 + 0.01 * h * h), 0.0);
             const double c = 0.5 * (c_i + values[sound_speed][k]);
             const double viscosity = (beta * mu - alpha * c) * mu / (0.5 * (rho_i + rho_j));
-            const double push = p_i + values[pressure][k] * inverse_rho2_j + viscosity;
+            viscous_speed = std::max(viscous_speed, mu < 0 ? alpha * c - 2 * beta * mu : 0.0);
+            // Each particle's own stress does the work of its own compression, which keeps cold gas next to
+            // hot gas from cooling below zero; the viscosity heats both alike.
+            const double p_j = values[pressure][k] * inverse_rho2_j;
             const double weight = values[mass][k] * factor;
             double power = 0;
             for (int a = 0; a < D; ++a) {
-                double traction = -push * r[a];
+                double own = -(p_i + 0.5 * viscosity) * r[a], other = -(p_j + 0.5 * viscosity) * r[a];
                 if constexpr (strength)
                     for (int b = 0; b < D; ++b) {
                         const int c_ab = symmetric_index<D>(a < b ? a : b, a < b ? b : a);
-                        traction += (s_i[c_ab] + s[c_ab][k] * inverse_rho2_j) * r[b];
+                        own += s_i[c_ab] * r[b];
+                        other += s[c_ab][k] * inverse_rho2_j * r[b];
                     }
-                terms[a][k] = weight * traction;
-                power += weight * traction * 0.5 * (v_i[a] + v[a][k]);
+                terms[a][k] = weight * (own + other);
+                power += weight * (own * v[a][k] + other * v_i[a]);
             }
             terms[D][k] = power;
         }
@@ -107,6 +112,7 @@ class StandardPass {
             for (std::size_t k = 0; k < n; ++k) total += term[k];
             (d < D ? acceleration_[d < D ? d : 0] : power_)[i] = total;
         }
+        viscous_speed_[i] = viscous_speed;
     }
 
     const Kernel kernel_;
@@ -115,7 +121,7 @@ class StandardPass {
     std::array<const double*, scalar_count> scalars_;
     std::array<const double*, symmetric_count<D>> stress_{};
     std::array<double*, D> acceleration_;
-    double* power_;
+    double *power_, *viscous_speed_;
     Partners<D> partners_;
     PartnerValues<D> x_, v_;
     PartnerValues<scalar_count> values_;

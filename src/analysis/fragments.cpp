@@ -63,16 +63,16 @@ ParticleSet intact_particles(const ParticleSet& particles, const FragmentRules& 
 template <int D>
 void join_linked(const ParticleSet& intact, const CellTable& table, const FragmentRules& rules,
                  DisjointSets& sets) {
-    std::vector<double> link2;
-    for (const double length : rules.linking_length) link2.push_back(length * length);
     const std::uint8_t* body = intact.data(field::body);
-    const auto position = sph::components<D>(intact, field::position);
-    Partners<D> partners;
+    std::vector<double> reach(intact.size_with_halo());
+    for (std::size_t k = 0; k < reach.size(); ++k) reach[k] = rules.linking_length[body[k]];
+    Partners<D> partners(sph::components<D>(intact, field::position), reach.data(), 1);
     table.for_each_own(Cells::all, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+        partners.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            partners.find(position, i, runs,
-                          [&, i](std::uint32_t k) { return body[k] == body[i] ? link2[body[i]] : 0.0; });
-            for (const std::uint32_t k : partners.index()) sets.join(i, k);
+            partners.find(i, 1);
+            for (const std::uint32_t k : partners.index())
+                if (body[k] == body[i]) sets.join(i, k);
         }
     });
 }

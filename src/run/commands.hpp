@@ -15,8 +15,8 @@ int run_scene(const Communicator& comm, const RunOptions& options);
 /// particle and per rank, the first time step and the estimated cost. Collective.
 int check_scene(const Communicator& comm, const RunOptions& options);
 
-/// `talus analyse`: what the scene's [analysis] table asks for, of a checkpoint in the run's output folder (the
-/// newest, or --restart); written there. Collective.
+/// `talus analyse`: what the scene's [analysis] table asks for, of a checkpoint in the run's output folder
+/// (the newest, or --restart); written there. Collective.
 int analyse_checkpoint(const Communicator& comm, const RunOptions& options);
 
 /// Where a run's results go: --out, or out/<name of the scene>.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "io/agree.hpp"
 #include "io/checkpoint.hpp"
@@ -138,6 +139,7 @@ void Recorder::begin(Simulation& simulation, double end_time) {
         write_checkpoint_now(simulation);
     }
     files_->progress = std::make_unique<Progress>(comm_.is_root(), Progress::Goal{end_time, {}});
+    simulation.reset_counters();
     began_ = step_began_ = last_checkpoint_time_ = std::chrono::steady_clock::now();
 }
 
@@ -180,9 +182,17 @@ void Recorder::finish(Simulation& simulation) {
     print_summary(simulation);
 }
 
-std::string Recorder::last_checkpoint_hint() const {
-    if (last_checkpoint_.empty()) return "no checkpoint was written yet";
-    return fmt::format("last checkpoint: {}", last_checkpoint_.string());
+std::string Recorder::after_failure(const Simulation& simulation) {
+    const std::filesystem::path folder = folder_ / "failed";
+    std::string message = fmt::format("last checkpoint: {}", last_checkpoint_.string());
+    try {
+        agree_on_root(comm_, [&] { std::filesystem::create_directories(folder); });
+        write_checkpoint(comm_, folder, run_state(simulation, scene_), {&simulation.particles()});
+        message += fmt::format("\nstate that failed: {}", find_checkpoint(comm_, folder, folder_).string());
+    } catch (const AgreedError& error) {
+        message += fmt::format("\nthe state that failed could not be kept: {}", error.what());
+    }
+    return message;
 }
 
 void Recorder::write_checkpoint_now(Simulation& simulation) {
@@ -226,14 +236,39 @@ void Recorder::write_diagnostics(Simulation& simulation) {
     files_->diagnostics->write(simulation.step_count(), row);
 }
 
+void Recorder::write_performance(const Simulation& simulation, const PhaseTimer& timer, double seconds,
+                                 std::uint64_t pairs) {
+    const std::vector<PhaseTimer::Row> rows = timer.rows(comm_);
+    const std::uint64_t memory = comm_.all_sum(peak_memory());
+    const std::uint64_t messages = comm_.all_max(simulation.decomposition().halo().messages_sent());
+    const std::uint64_t bytes = comm_.all_max(simulation.decomposition().halo().bytes_sent());
+    agree_on_root(comm_, [&] {
+        std::string phases;
+        for (const auto& row : rows)
+            phases += fmt::format("{}\"{}\": {:.6g}", phases.empty() ? "" : ", ", row.phase, row.average);
+        std::ofstream file(folder_ / "performance.json");
+        file << fmt::format(
+            "{{\"ranks\": {}, \"particles\": {}, \"steps\": {}, \"seconds\": {:.6g}, \"pairs\": {}, "
+            "\"field_bytes_per_particle\": {}, \"peak_memory_bytes\": {}, \"messages_of_a_rank\": {}, "
+            "\"message_bytes_of_a_rank\": {}, \"imbalance\": {:.4g}, \"phase_seconds\": {{{}}}}}\n",
+            comm_.size(), simulation.total_particles(), simulation.step_count() - first_step_, seconds, pairs,
+            simulation.particles().bytes_per_particle(), memory, messages, bytes,
+            simulation.decomposition().measured_imbalance(), phases);
+        file.close();
+        if (!file)
+            throw std::runtime_error((folder_ / "performance.json").string() + " could not be written");
+    });
+}
+
 void Recorder::print_summary(Simulation& simulation) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
     PhaseTimer timer;
     for (std::size_t p = 0; p < phase_names.size(); ++p)
-        timer.add(phase_names[p], simulation.phases().seconds()[p]);
+        timer.add(phase_names[p], simulation.phases().seconds()[p], simulation.phases().entries()[p]);
     const std::string table = timer.report(comm_, seconds);
     const std::uint64_t pairs = comm_.all_sum(simulation.pairs());
     const Totals totals = simulation.totals();
+    write_performance(simulation, timer, seconds, pairs);
     if (!comm_.is_root()) return;
     const auto steps = static_cast<double>(simulation.step_count() - first_step_);
     const double updates = steps * static_cast<double>(simulation.total_particles());

@@ -32,8 +32,9 @@ class Recorder {
     /// Writes the last state and what the scene wants to know of it; prints the table of time per phase.
     void finish(Simulation& simulation);
 
-    /// Where to go on from after a failure, for messages.
-    std::string last_checkpoint_hint() const;
+    /// After a failure of step(): keeps the state that failed in `folder`/failed for a look with `talus
+    /// info`, and says where it is and where to go on from.
+    std::string after_failure(const Simulation& simulation);
     /// Longest wall time of a step so far [s].
     double longest_step() const { return longest_step_; }
 
@@ -45,6 +46,8 @@ class Recorder {
     void write_analysis(const Simulation& simulation);
     void write_diagnostics(Simulation& simulation);
     void print_summary(Simulation& simulation);
+    void write_performance(const Simulation& simulation, const class PhaseTimer& timer, double seconds,
+                           std::uint64_t pairs);
 
     const Communicator& comm_;
     std::filesystem::path folder_;

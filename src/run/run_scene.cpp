@@ -44,7 +44,7 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
         }
     } catch (const AgreedError& error) {
         throw AgreedError(error.exit_code,
-                          fmt::format("{}\n{}", error.what(), recorder.last_checkpoint_hint()));
+                          fmt::format("{}\n{}", error.what(), recorder.after_failure(*simulation)));
     }
     recorder.finish(*simulation);
     return exit_done;

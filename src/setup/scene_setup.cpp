@@ -74,6 +74,8 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         all_gas &= gas != nullptr;
         any_strength |= material.shear_modulus > 0;
         if (gas) shock_slope = std::max(shock_slope, 0.5 * (gas->gamma + 1));
+        // dU/du_p of most solids is near 1.5, which makes 1.5 (strong shocks) to 3 (weak ones).
+        if (std::holds_alternative<Tillotson>(material.eos)) shock_slope = std::max(shock_slope, 2.0);
     }
     const bool godunov = table.choice("formulation", {"godunov", "standard"}, "godunov") == "godunov";
     settings.formulation = godunov ? sph::Formulation::godunov : sph::Formulation::standard;
@@ -87,12 +89,12 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
     } else {
         settings.kernel = kernel_named(
             table.choice("kernel", {"gaussian", "cubic_spline", "wendland_c2", "wendland_c4", "wendland_c6"},
-                         "wendland_c2"));
+                         dimension == 1 ? "wendland_c4" : "wendland_c2"));
         settings.viscosity_alpha = table.number("viscosity_alpha", "1", 1.0, not_negative);
         settings.viscosity_beta = table.number("viscosity_beta", "1", 2.0, not_negative);
     }
     if (settings.kernel == sph::KernelKind::gaussian)
-        settings.cutoff = table.number("cutoff", "1", dimension == 3 ? 2.0 : 3.0, {1, 3.1});
+        settings.cutoff = table.number("cutoff", "1", sph::default_cutoff(dimension, any_strength), {1, 4});
     const std::string density = all_gas ? "summation" : "continuity";
     settings.density = table.choice("density", {"continuity", "summation"}, density) == "summation"
                            ? sph::DensityMethod::summation
@@ -101,7 +103,7 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         table.error("density", "a solid with strength needs density = \"continuity\"");
     settings.variable_smoothing_length = table.choice("smoothing_length", {"constant", "variable"},
                                                       all_gas ? "variable" : "constant") == "variable";
-    settings.eta = table.number("eta", "1", godunov ? 1.0 : 1.3, {0.5, 5});
+    settings.eta = table.number("eta", "1", godunov ? 1.0 : dimension == 1 ? 1.6 : 1.3, {0.5, 5});
     if (settings.variable_smoothing_length) {
         settings.smoothing_widening = table.number("smoothing_widening", "1", 1.0, {1, 5});
         if (table.has("largest_smoothing_length"))

@@ -132,6 +132,19 @@ TEST(Checkpoint, KeepsTheNewestTwo) {
     EXPECT_EQ(std::distance(begin(entries), end(entries)), 2);
 }
 
+TEST(Checkpoint, ARunThatWentBackKeepsItsOwn) {
+    const Communicator comm(MPI_COMM_WORLD);
+    const SharedFolder folder(comm);
+    const ParticleSet set = random_set(comm, 100, 1);
+    for (const std::uint64_t step : {10U, 20U, 15U})
+        write_checkpoint(comm, folder.path, some_state(step), {&set});
+    const auto files = list_checkpoints(folder.path);
+    ASSERT_EQ(files.size(), 2U);
+    EXPECT_EQ(files[0].filename(), "checkpoint_000000015.h5");
+    EXPECT_EQ(files[1].filename(), "checkpoint_000000010.h5");
+    EXPECT_TRUE(std::filesystem::exists(folder.path / "checkpoint_000000020.h5.superseded"));
+}
+
 TEST(Checkpoint, ADoubleIdIsRefused) {
     const Communicator comm(MPI_COMM_WORLD);
     const SharedFolder folder(comm);

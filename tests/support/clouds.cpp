@@ -81,9 +81,10 @@ std::vector<Cloud> all_clouds() {
     clouds.push_back(spread("reflecting 3D", make_box(3, {reflecting, reflecting, reflecting}), 0.23, 500));
     clouds.push_back(spread("mixed 3D", make_box(3, {reflecting, periodic, open}), 0.23, 500));
     clouds.push_back(spread("narrow periodic 2D", make_box(2, {periodic, open}, {0.125, 1, 1}), 0.125, 100));
-    clouds.push_back(spread("narrow reflecting 2D", make_box(2, {open, reflecting}, {1, 0.125, 1}), 0.125, 100));
     clouds.push_back(
-        spread("narrow periodic 3D", make_box(3, {periodic, periodic, periodic}, {0.25, 0.25, 0.25}), 0.25, 60));
+        spread("narrow reflecting 2D", make_box(2, {open, reflecting}, {1, 0.125, 1}), 0.125, 100));
+    clouds.push_back(spread("narrow periodic 3D",
+                            make_box(3, {periodic, periodic, periodic}, {0.25, 0.25, 0.25}), 0.25, 60));
     clouds.push_back(lattice("lattice 1D", 1, open));
     clouds.push_back(lattice("lattice 2D", 2, periodic));
     clouds.push_back(lattice("lattice 3D", 3, open));

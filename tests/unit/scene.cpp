@@ -215,6 +215,20 @@ TEST(Scene, KeysLookedForButNotReadAreFaults) {
               "s.toml:2: b = inf (not finite; allowed: a number in m, or text with a unit)");
 }
 
+TEST(Scene, FaultsOfCallersAreAtTheirLines) {
+    const Scene scene = scene_of("x = 1\n[[body]]\nr = 1\n");
+    const Section body = scene.root().sections("body")[0];
+    body.number("r", "m");
+    scene.root().integer("x");
+    body.error("", "overlaps another body");
+    body.error("speed", "needed for a projectile");
+    scene.root().section("gas").error("gamma", "needed");
+    EXPECT_EQ(faults(scene),
+              "s.toml: gas.gamma (needed)\n"
+              "s.toml:2: body[0] (overlaps another body)\n"
+              "s.toml:2: body[0].speed (needed for a projectile)");
+}
+
 TEST(Scene, ResolvedReadsBack) {
     const auto read = [](const Scene& scene) {
         const Section root = scene.root();

@@ -162,5 +162,40 @@ TEST(Strength, LimitsTheStressOfOneBodyInEveryDimension) {
     }
 }
 
+TEST(Strength, CrackedMatterBearsNoTensionAndNoShearButFriction) {
+    const std::vector<double> whole(3, 0.0), D{0, 0.25, 1};
+    const std::vector<double> u(3, 0.0);
+    const std::vector<std::uint8_t> body(3, 0);
+    const auto respond = [&](const Strength& strength, double P, std::span<const double> damage) {
+        std::vector<double> pressure(3, P), xx(3, 2e6), xy(3, 5e6);
+        std::vector<double> yy(3, -2e6);
+        const StressColumns<double> stress{2, {xx.data(), yy.data(), xy.data()}};
+        limit_stress(strength, {pressure, u, damage}, stress, body, 0);
+        relieve_stress(strength, damage, pressure, stress, body, 0);
+        std::vector<std::array<double, 2>> result;
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_DOUBLE_EQ(xx[i], 0.4 * xy[i]) << "scaled as a whole";
+            EXPECT_DOUBLE_EQ(yy[i], -xx[i]);
+            result.push_back({pressure[i], xy[i]});
+        }
+        return result;
+    };
+    for (const Strength& strength : {Strength{NoStrengthLimit{}}, Strength{von_mises}}) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double left = 1 - D[i];
+            EXPECT_DOUBLE_EQ(respond(strength, -1e7, D)[i][0], -1e7 * left);
+            EXPECT_DOUBLE_EQ(respond(strength, -1e7, D)[i][1], 5e6 * left);
+            EXPECT_EQ(respond(strength, 1e7, D)[i][0], 1e7) << "cracks bear pressure";
+            EXPECT_DOUBLE_EQ(respond(strength, 1e7, D)[i][1], 5e6 * left);
+            EXPECT_EQ(respond(strength, -1e7, whole)[i][1], 5e6);
+        }
+    }
+    // Friction: the strength falls, 90 MPa intact, mu_d P or nothing when broken.
+    EXPECT_EQ(respond(lundborg, -1e7, D)[1], (std::array{-0.75e7, 5e6}));
+    EXPECT_EQ(respond(lundborg, -1e7, D)[2][1], 0);
+    EXPECT_EQ(respond(lundborg, 1e7, D)[2][1], 5e6) << "0.8e7 is more than sqrt(J2)";
+    EXPECT_NEAR(respond(lundborg, 1e6, D)[2][1] * std::sqrt(1 + 0.16), 0.8e6, 1e-6);
+}
+
 }  // namespace
 }  // namespace talus

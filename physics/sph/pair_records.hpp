@@ -1,0 +1,113 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "domain/cell_table.hpp"
+#include "domain/lanes.hpp"
+#include "domain/particles.hpp"
+
+namespace talus::sph {
+
+/// What a pair loop reads of one particle, side by side in memory: a partner costs a few cache lines, not one
+/// for each of its values.
+template <std::size_t count>
+struct alignas(32) PairRecord {
+    std::array<double, count> values;
+};
+
+/// One record in every lane.
+template <std::size_t count>
+std::array<Lanes, count> broadcast(const PairRecord<count>& record) {
+    std::array<Lanes, count> lanes;
+    for (std::size_t c = 0; c < count; ++c) lanes[c] = record.values[c];
+    return lanes;
+}
+
+/// The records of those particles that the cells being visited can reach: of own particles a window that
+/// moves through the set as cells are visited in order, kept in a ring; of copies all.
+template <std::size_t count>
+class PairRecords {
+  public:
+    PairRecords(const ParticleSet& particles, const CellTable& table, Cells which)
+        : own_(static_cast<std::uint32_t>(particles.size())) {
+        std::uint32_t longest = 1,
+                      filled = 0;  // windows do not begin in order: a row of cells may be missing
+        bool any = false;
+        table.for_each_own(which, [&](const CellEntry&, std::span<const Run> runs, std::size_t) {
+            const Run window = own_window(runs);
+            filled = std::max(filled, window.end);
+            if (window.begin < window.end) longest = std::max(longest, filled - window.begin);
+            any = true;
+        });
+        ring_ = std::bit_ceil(longest);
+        copies_ = any && which != Cells::interior ? particles.halo_size() : 0;
+        records_ = std::make_unique_for_overwrite<PairRecord<count>[]>(ring_ + copies_);
+    }
+
+    /// Values from `place` on are copied from these component arrays.
+    template <std::size_t components>
+    void copy(std::size_t place, const std::array<const double*, components>& from) {
+        for (std::size_t c = 0; c < components; ++c) columns_[place + c] = from[c];
+    }
+    /// Fills the records of the copies; finish(k, values) sets what is not copied.
+    template <class Finish>
+    void fill_copies(Finish&& finish) {
+        for (std::size_t k = own_; k < own_ + copies_; ++k) fill(static_cast<std::uint32_t>(k), finish);
+    }
+    /// Moves the window on to a cell with these runs. Cells must come in their order.
+    template <class Finish>
+    void enter(std::span<const Run> runs, Finish&& finish) {
+        const Run window = own_window(runs);
+        for (; filled_ < window.end; ++filled_) fill(filled_, finish);
+    }
+
+    const PairRecord<count>& operator[](std::uint32_t k) const { return records_[slot(k)]; }
+
+    /// The records of four particles, one in each lane.
+    std::array<Lanes, count> gather(const std::uint32_t* index) const {
+        std::array<Lanes, count> lanes;
+        std::array<const double*, lane_count> from;
+        for (std::size_t lane = 0; lane < lane_count; ++lane) from[lane] = (*this)[index[lane]].values.data();
+        const auto two = [&](std::size_t c) {
+            load_two({from[0] + c, from[1] + c, from[2] + c, from[3] + c}, lanes[c], lanes[c + 1]);
+        };
+        [&]<std::size_t... pair>(std::index_sequence<pair...>) { (two(2 * pair), ...); }
+        (std::make_index_sequence<count / 2>{});
+        if constexpr (count % 2 == 1)
+            lanes[count - 1] = Lanes([&](auto lane) { return from[lane][count - 1]; });
+        return lanes;
+    }
+
+  private:
+    /// From the first to behind the last own particle in the runs.
+    Run own_window(std::span<const Run> runs) const {
+        Run window{own_, 0};
+        for (const Run& run : runs) {
+            if (run.begin >= own_) continue;
+            window.begin = std::min(window.begin, run.begin);
+            window.end = std::max(window.end, std::min(run.end, own_));
+        }
+        return window;
+    }
+    std::size_t slot(std::uint32_t k) const { return k < own_ ? k & (ring_ - 1) : ring_ + (k - own_); }
+
+    template <class Finish>
+    void fill(std::uint32_t k, Finish& finish) {
+        auto& values = records_[slot(k)].values;
+        for (std::size_t c = 0; c < count; ++c)
+            if (columns_[c]) values[c] = columns_[c][k];
+        finish(k, values);
+    }
+
+    std::array<const double*, count> columns_{};
+    std::uint32_t own_, ring_ = 1, filled_ = 0;
+    std::size_t copies_ = 0;
+    std::unique_ptr<PairRecord<count>[]> records_;
+};
+
+}  // namespace talus::sph

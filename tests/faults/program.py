@@ -1,0 +1,162 @@
+"""What the program does when things go wrong: clear messages, agreed exit codes on all ranks, nothing lost.
+
+usage: program.py PROGRAM MPIRUN RUNS_FOLDER
+Exit codes: 0 done, 1 run-time failure, 2 bad scene or usage, 3 input/output, 75 stopped early with a checkpoint.
+"""
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM, MPIRUN, RUNS = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+SCENE = RUNS / "basalt_impact"
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1", OMP_NUM_THREADS="1")
+
+
+def command(arguments, ranks):
+    line = [PROGRAM] if ranks == 0 else [MPIRUN, "--oversubscribe", "-n", str(ranks), PROGRAM]
+    return line + [str(a) for a in arguments]
+
+
+def talus(*arguments, ranks=2):
+    return subprocess.run(command(arguments, ranks), capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          env=ENVIRONMENT, timeout=240)
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.holder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.holder.cleanup)
+        self.folder = pathlib.Path(self.holder.name)
+        self.out = self.folder / "out"
+
+    def scene(self, text, name="scene.toml"):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def assert_fails(self, done, code, *patterns):
+        output = done.stdout + done.stderr
+        self.assertEqual(done.returncode, code, output)
+        for pattern in patterns:
+            self.assertRegex(output, pattern)
+
+    def hash(self, out):
+        done = talus("hash", out, ranks=0)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout.split()[0]
+
+
+class BadInput(Case):
+    def test_every_fault_of_a_scene_is_reported_at_once_with_its_line(self):
+        text = (RUNS / "sod_tube" / "scene.toml").read_text()
+        text = text.replace("end_time = 0.2", 'end_tme = 0.2').replace('pressure = 1\n', 'pressure = "1 kg"\n')
+        path = self.scene(text)
+        line = 1 + text[:text.index("end_tme")].count("\n")
+        done = talus("run", path, "--out", self.out)
+        self.assert_fails(done, 2, rf"scene\.toml:{line}: run\.end_tme", "end_time", r"pressure.*1 kg")
+        self.assertFalse(self.out.exists(), "a bad scene must not leave a folder")
+
+    def test_words_not_allowed_are_named_with_those_that_are(self):
+        done = talus("check", SCENE, "--quick", "--set", "sph.formulation=godunof")
+        self.assert_fails(done, 2, "--set sph.formulation", "godunof", "standard")
+
+    def test_missing_files(self):
+        self.assert_fails(talus("run", self.folder / "nowhere"), 2, "nowhere")
+        done = talus("run", SCENE, "--quick", "--set", "body[0].material=cheese", "--out", self.out)
+        self.assert_fails(done, 2, "cheese", "materials/cheese.toml")
+        self.assert_fails(talus("hash", self.folder / "none.h5", ranks=0), 3, "none.h5")
+        self.assert_fails(talus("run", SCENE, "--quick", "--restart", "latest", "--out", self.out), 3, "checkpoint")
+
+    def test_usage(self):
+        self.assert_fails(talus("run", ranks=0), 2, "scene")
+        self.assert_fails(talus("run", SCENE, "--walltime", "soon"), 2, "soon")
+        self.assert_fails(talus("run", SCENE, "--until", "3 kg"), 2, "3 kg")
+
+    def test_output_that_cannot_be_written(self):
+        blocker = self.folder / "file"
+        blocker.write_text("not a folder")
+        self.assert_fails(talus("run", SCENE, "--quick", "--out", blocker / "out"), 3, "file")
+
+
+class RunTimeFailures(Case):
+    def test_a_value_that_is_not_finite_stops_all_ranks_and_names_the_particle(self):
+        # Four times the stable time step: values grow until they overflow.
+        done = talus("run", RUNS / "sod_tube", "--quick", "--until", "50", "--out", self.out, "--set", "sph.courant=2")
+        self.assert_fails(done, 1, r"step \d+, time .* of particle \d+ in set 'sph' is not finite",
+                          r"last checkpoint: .*checkpoint_\d+\.h5", r"state that failed: .*failed/checkpoint_\d+\.h5")
+        self.assertEqual(talus("hash", self.out, ranks=0).returncode, 0)
+        self.assertEqual(talus("info", next((self.out / "failed").glob("*.h5")), ranks=0).returncode, 0)
+
+
+class EarlyStops(Case):
+    def expected(self, steps):
+        out = self.folder / "straight"
+        self.assertEqual(talus("run", SCENE, "--quick", "--steps", steps, "--out", out).returncode, 0)
+        return self.hash(out)
+
+    def restart_and_compare(self, steps):
+        done = talus("run", SCENE, "--quick", "--steps", steps, "--out", self.out, "--restart", "latest", ranks=3)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(self.hash(self.out), self.expected(steps))
+
+    def stopped_step(self, output):
+        return int(re.search(r"stopped early: .*\(step (\d+)", output).group(1))
+
+    def start(self, *options):
+        process = subprocess.Popen(command(["run", SCENE, "--quick", "--out", self.out, *options], 2), text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                                   env=ENVIRONMENT)
+        deadline = time.time() + 60
+        while not list(self.out.glob("checkpoint_*.h5")) and time.time() < deadline:
+            time.sleep(0.05)
+        return process
+
+    def test_signal(self):
+        process = self.start()
+        process.send_signal(signal.SIGUSR1)
+        output, _ = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 75, output)
+        self.restart_and_compare(self.stopped_step(output) + 5)
+
+    def test_stop_file(self):
+        process = self.start()
+        (self.out / "stop").touch()
+        output, _ = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 75, output)
+        self.assertIn("file 'stop'", output)
+        self.assertFalse((self.out / "stop").exists(), "an obeyed stop file is removed")
+
+    def test_wall_time(self):
+        done = talus("run", SCENE, "--quick", "--out", self.out, "--walltime", "2", "--until", "1 s")
+        self.assertEqual(done.returncode, 75, done.stdout + done.stderr)
+        self.assertIn("wall time", done.stdout)
+        self.assertEqual(talus("hash", self.out, ranks=0).returncode, 0)
+
+
+class DamagedCheckpoints(Case):
+    def test_a_flipped_byte_is_refused_and_the_previous_checkpoint_offered(self):
+        for steps, options in [(3, []), (6, ["--restart", "latest"])]:
+            done = talus("run", SCENE, "--quick", "--steps", steps, "--out", self.out, *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        newest = max(self.out.glob("checkpoint_*.h5"))
+        content = bytearray(newest.read_bytes())
+        content[len(content) // 2] ^= 1
+        newest.write_bytes(content)
+        done = talus("run", SCENE, "--quick", "--steps", "8", "--out", self.out, "--restart", "latest")
+        self.assert_fails(done, 3, newest.name, r"checkpoint_000000003\.h5")
+
+    def test_an_earlier_run_is_kept(self):
+        for _ in range(2):
+            self.assertEqual(talus("run", SCENE, "--quick", "--steps", "2", "--out", self.out).returncode, 0)
+        self.assertEqual(self.hash(self.out), self.hash(self.folder / "out.1"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0]], verbosity=2)

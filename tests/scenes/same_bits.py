@@ -1,0 +1,77 @@
+"""Every scene of runs/ gives the same bits on any number of ranks, for any map of cells to ranks, and across a restart
+on another number of ranks: `talus hash` of the state after some steps must not change.
+
+usage: same_bits.py PROGRAM MPIRUN RUNS_FOLDER [SCENE ...]
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+STEPS = 14
+STOP = 5
+MAPS = {1: "metis", 2: "metis", 3: "scrambled", 5: "slabs", 8: "metis"}  # of each number of ranks
+
+
+class Runner:
+    def __init__(self, program, mpirun, folder):
+        self.program, self.mpirun, self.folder, self.count = program, mpirun, folder, 0
+        self.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                                OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1",
+                                OMP_NUM_THREADS="1")
+
+    def command(self, arguments, ranks):
+        line = [self.program] if ranks == 0 else [self.mpirun, "--oversubscribe", "-n", str(ranks), self.program]
+        done = subprocess.run(line + [str(a) for a in arguments], capture_output=True, text=True,
+                              stdin=subprocess.DEVNULL, env=self.environment, timeout=300)
+        if done.returncode != 0:
+            sys.exit(f"{' '.join(map(str, line + arguments))} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
+        return done.stdout
+
+    def run(self, scene, steps, ranks, partition, out=None, restart=False):
+        """Runs a scene (ranks 0: without mpirun) and returns its output folder."""
+        if out is None:
+            self.count += 1
+            out = self.folder / f"{scene.name}_{self.count}"
+        arguments = ["run", scene, "--quick", "--steps", steps, "--out", out, "--set",
+                     f"run.decomposition={partition}", "--set", "run.rebalance_interval=2"]
+        self.command(arguments + (["--restart", "latest"] if restart else []), ranks)
+        return out
+
+    def hash(self, out):
+        return self.command(["hash", out], 0).split()[0]
+
+
+def check(runner, scene):
+    reference = runner.hash(runner.run(scene, STEPS, 0, "metis"))
+    wrong = []
+    for ranks, partition in MAPS.items():
+        found = runner.hash(runner.run(scene, STEPS, ranks, partition))
+        if found != reference:
+            wrong.append(f"{ranks} ranks, {partition}: {found}")
+    for before, after, partition in [(2, 3, "scrambled"), (5, 1, "metis")]:
+        out = runner.run(scene, STOP, before, partition)
+        runner.run(scene, STEPS, after, "metis", out, restart=True)
+        found = runner.hash(out)
+        if found != reference:
+            wrong.append(f"stopped at step {STOP} on {before} ranks, restarted on {after}: {found}")
+    print(f"{scene.name}: {'same bits, ' + reference if not wrong else 'DIFFERS from ' + reference}")
+    for line in wrong:
+        print("   ", line)
+    return not wrong
+
+
+def main():
+    program, mpirun, runs = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+    scenes = sorted(p.parent for p in runs.glob("*/scene.toml"))
+    if sys.argv[4:]:
+        scenes = [s for s in scenes if s.name in sys.argv[4:]]
+    assert scenes, "no scenes found"
+    with tempfile.TemporaryDirectory() as folder:
+        runner = Runner(program, mpirun, pathlib.Path(folder))
+        results = [check(runner, scene) for scene in scenes]
+    sys.exit(0 if all(results) else 1)
+
+
+main()

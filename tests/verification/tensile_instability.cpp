@@ -1,0 +1,241 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "domain/random.hpp"
+#include "tests/support/lattice_simulation.hpp"
+
+/// The tensile instability: stretched (or, for some interpolations, compressed) lattices that clump.
+/// K. Sugiura, S. Inutsuka, J. Comput. Phys. 308 (2016) 171.
+namespace talus::test {
+namespace {
+
+using sph::Interpolation;
+constexpr Interpolation interpolations[] = {Interpolation::linear, Interpolation::cubic,
+                                            Interpolation::quintic};
+constexpr const char* names[] = {"linear", "cubic", "quintic"};
+const char* name_of(Interpolation kind) { return names[static_cast<int>(kind)]; }
+
+/// Waves run along x; the other sides need no more than one period.
+constexpr int length = 12;
+Point box_size(int dimension) { return {length, dimension > 1 ? 5.0 : 0.0, dimension > 2 ? 5.0 : 0.0}; }
+double wavenumber(int mode) { return 2 * std::numbers::pi * mode / length; }
+
+Point nothing(std::uint64_t, const Point&) { return {}; }
+LatticeSimulation::Field sine_along_x(double amplitude, double k) {
+    return [=](std::uint64_t, const Point& site) { return Point{amplitude * std::sin(k * site[0]), 0, 0}; };
+}
+
+LatticeCase with_interpolation(int dimension, Interpolation kind, double pressure) {
+    return {.dimension = dimension,
+            .size = box_size(dimension),
+            .pressure = pressure,
+            .compressed = kind,
+            .stretched = kind};
+}
+
+/// Results of `cases` small runs, each done by one rank alone.
+template <class Run>
+std::vector<double> on_shared_ranks(std::size_t cases, Run&& run) {
+    const Communicator world(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
+    const auto ranks = static_cast<std::size_t>(world.size()), rank = static_cast<std::size_t>(world.rank());
+    std::vector<double> mine;
+    for (std::size_t k = rank; k < cases; k += ranks) mine.push_back(run(alone, k));
+    mine.resize((cases + ranks - 1) / ranks);
+    const std::vector<double> all = world.all_gather(std::span<const double>(mine));
+    std::vector<double> results;
+    for (std::size_t k = 0; k < cases; ++k) results.push_back(all[k % ranks * mine.size() + k / ranks]);
+    return results;
+}
+bool is_root() {
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    return rank == 0;
+}
+
+class TensileInstability : public testing::TestWithParam<int> {};
+
+TEST_P(TensileInstability, AccelerationsFollowTheDispersionRelationOverTheWholeBand) {
+    constexpr double amplitude = 1e-6;
+    struct Case {
+        LatticeCase lattice;
+        double k;
+    };
+    std::vector<Case> cases;
+    for (const Interpolation kind : interpolations)
+        for (const double pressure : {1.0, 0.3, 0.1, -0.1, -0.3, -1.0})
+            for (int mode = 1; mode <= length / 2; ++mode) {
+                cases.push_back({with_interpolation(GetParam(), kind, pressure), wavenumber(mode)});
+                cases.back().lattice.density = sph::DensityMethod::summation;
+            }
+    const auto measured = on_shared_ranks(cases.size(), [&](const Communicator& comm, std::size_t c) {
+        const auto& [lattice, k] = cases[c];
+        return -LatticeSimulation(comm, lattice, sine_along_x(amplitude, k), nothing).acceleration(k) /
+               amplitude;
+    });
+    double worst = 0;
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        const double theory = omega_squared(cases[c].lattice, cases[c].k), error = measured[c] - theory;
+        EXPECT_LT(std::abs(error), 1e-4 * std::abs(theory) + 1e-6)
+            << name_of(cases[c].lattice.compressed) << ", P = " << cases[c].lattice.pressure
+            << ", k = " << cases[c].k;
+        worst = std::max(worst, std::abs(error));
+    }
+    RecordProperty("largest_error_of_omega_squared", std::to_string(worst));
+    if (is_root()) fmt::print("{}D: largest error of omega^2 {:.1e} (c/dx)^2\n", GetParam(), worst);
+}
+
+/// Solves sinh(x)/x = ratio, or sin(x)/x = ratio in the first half period where that is below 1.
+double growth_argument(double ratio) {
+    double low = 0, high = 50;
+    for (int i = 0; i < 200; ++i) {
+        const double x = 0.5 * (low + high);
+        (std::sinh(x) < ratio * x ? low : high) = x;
+    }
+    return low;
+}
+
+/// Growth rate of a mode given by its velocity, from its amplitude e^5/2 times larger.
+double measured_growth_rate(const Communicator& comm, const LatticeCase& lattice, double k, double expected) {
+    constexpr double speed = 1e-8;
+    LatticeSimulation wave(comm, lattice, nothing, sine_along_x(speed, k));
+    while (wave.run().time() * expected < 5) wave.run().step();
+    const double time = wave.run().time();
+    return growth_argument(wave.displacement(k) / (speed * time)) / time;
+}
+
+/// Frequency of a stable mode given by its velocity, from the time of one and a half periods.
+double measured_frequency(const Communicator& comm, const LatticeCase& lattice, double k) {
+    LatticeSimulation wave(comm, lattice, nothing, sine_along_x(1e-8, k));
+    double before = wave.displacement(k), passage = 0;
+    for (int passages = 0; passages < 3;) {
+        const double start = wave.run().time();
+        wave.run().step();
+        const double now = wave.displacement(k);
+        if (before * now < 0) {
+            passage = start + (wave.run().time() - start) * before / (before - now);
+            ++passages;
+        }
+        before = now;
+    }
+    return 3 * std::numbers::pi / passage;
+}
+
+/// The mode of the box that the relation says grows fastest.
+int fastest_mode(const LatticeCase& lattice) {
+    int fastest = 1;
+    for (int mode = 2; mode <= length / 2; ++mode)
+        if (omega_squared(lattice, wavenumber(mode)) < omega_squared(lattice, wavenumber(fastest)))
+            fastest = mode;
+    return fastest;
+}
+
+TEST_P(TensileInstability, ModesGrowAndSwingAtTheRatesOfTheDispersionRelation) {
+    std::vector<LatticeCase> cases;
+    for (const Interpolation kind : interpolations)
+        for (const double pressure : {1.0, -1.0})
+            cases.push_back(with_interpolation(GetParam(), kind, pressure));
+    const auto theory = [&](std::size_t c) {
+        return omega_squared(cases[c], wavenumber(fastest_mode(cases[c])));
+    };
+    const auto measured = on_shared_ranks(cases.size(), [&](const Communicator& comm, std::size_t c) {
+        const double k = wavenumber(fastest_mode(cases[c])), rate = std::sqrt(std::abs(theory(c)));
+        return theory(c) < 0 ? measured_growth_rate(comm, cases[c], k, rate)
+                             : measured_frequency(comm, cases[c], k);
+    });
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        const double rate = std::sqrt(std::abs(theory(c)));
+        EXPECT_NEAR(measured[c] / rate, 1, 0.01)
+            << name_of(cases[c].compressed) << ", P = " << cases[c].pressure;
+        if (is_root())
+            fmt::print("| {} | {} | {:+.0f} | {:.3f} | {} | {:.5f} | {:.5f} | {:+.2f} % |\n", GetParam(),
+                       name_of(cases[c].compressed), cases[c].pressure, fastest_mode(cases[c]) * 2.0 / length,
+                       theory(c) < 0 ? "grows" : "swings", measured[c], rate, 100 * (measured[c] / rate - 1));
+    }
+}
+
+/// Least distance between two particles after some sound crossings of a slightly disordered box, or as soon
+/// as they have clumped; in units of that in the lattice.
+double closest_after(const Communicator& comm, const LatticeCase& lattice, double crossings) {
+    static constexpr RandomStream noise{.seed = 3};
+    LatticeSimulation box(
+        comm, lattice,
+        [](std::uint64_t id, const Point&) {
+            Point d{};
+            for (std::uint32_t a = 0; a < 3; ++a) d[a] = 0.01 * (2 * noise.uniform(id, a) - 1);
+            return d;
+        },
+        nothing);
+    const double lattice_distance = box.closest_sites();
+    double closest = 1;
+    while (box.run().time() < crossings * lattice.size[0] && closest > 0.5) {
+        for (int step = 0; step < 10; ++step) box.run().step();
+        closest = box.closest_pair() / lattice_distance;
+    }
+    return closest;
+}
+
+/// Each sign of the pressure: the automatic choice without any dissipation; a fluid and a solid as scenes
+/// have them by default; and another choice, which must clump.
+TEST_P(TensileInstability, TheAutomaticChoiceIsStableForBothSignsOfPressure) {
+    const int dimension = GetParam();
+    struct Case {
+        const char* what;
+        LatticeCase lattice;
+        bool stable = true;
+        double least = 0.85;
+    };
+    std::vector<Case> cases;
+    for (const double pressure : {0.3, -0.3}) {
+        LatticeCase plain{.dimension = dimension,
+                          .lattice = Lattice::close_packed,  // fluids shear a cubic lattice into this one
+                          .pressure = pressure,
+                          .compressed = sph::stable_compressed(dimension),
+                          .stretched = sph::stable_stretched(dimension),
+                          .density = sph::DensityMethod::summation,
+                          .courant = 0.5};
+        const double edge = dimension == 3 ? std::cbrt(4.0) : std::sqrt(2 / std::sqrt(3.0));  // of a cell
+        plain.size = {12, 0, 0};
+        if (dimension == 2) plain.size = {12 * edge, 7 * std::sqrt(3.0) * edge, 0};
+        if (dimension == 3) plain.size = {4 * edge, 4 * edge, 4 * edge};
+        LatticeCase fluid = plain, wrong = plain;
+        fluid.density = sph::DensityMethod::continuity;
+        fluid.riemann = true;
+        fluid.cutoff = sph::default_cutoff(dimension, false);
+        LatticeCase solid = fluid;
+        solid.shear_modulus = 0.85;  // basalt
+        solid.cutoff = sph::default_cutoff(dimension, true);
+        wrong.compressed = dimension == 1 ? Interpolation::quintic : Interpolation::cubic;
+        wrong.stretched = Interpolation::linear;
+        cases.insert(cases.end(), {{"no dissipation", plain},
+                                   {"default fluid", fluid},
+                                   {"default solid", solid},
+                                   {"no dissipation", wrong, false}});
+        // Cut at 2 h, a solid in 3D forms pairs too, but slowly.
+        if (dimension == 3 && pressure > 0) cases[2].least = 0.5;
+    }
+    const auto closest = on_shared_ranks(cases.size(), [&](const Communicator& comm, std::size_t c) {
+        return closest_after(comm, cases[c].lattice, 10);
+    });
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        const auto& [what, lattice, stable, least] = cases[c];
+        if (stable)
+            EXPECT_GT(closest[c], least) << what << ", P = " << lattice.pressure;
+        else
+            EXPECT_LT(closest[c], 0.5) << what << ", P = " << lattice.pressure;
+        if (is_root())
+            fmt::print("| {} | {:+.1f} | {} | {} | {:.2f} |\n", dimension, lattice.pressure, what,
+                       name_of(lattice.pressure > 0 ? lattice.compressed : lattice.stretched), closest[c]);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lattices, TensileInstability, testing::Values(1, 2, 3),
+                         [](const auto& dimension) { return std::to_string(dimension.param) + "D"; });
+
+}  // namespace
+}  // namespace talus::test
