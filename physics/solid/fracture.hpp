@@ -126,7 +126,8 @@ void grow_damage(const CrackGrowth& growth, const FractureState& state, double d
 
 /// Longest step [s] in which D^(1/3), which cracks make grow at a constant rate, gains no more than `most` in
 /// any particle with body == which; infinite if none is growing. A particle with less than `most` to go to
-/// its limit does not count. C. Schaefer et al., Astron. Comput. 33 (2020) 100410, allow 0.15 too.
+/// its limit does not count. The code of C. Schaefer et al., Astron. Comput. 33
+/// (2020) 100410, has such a limit, of 0.01 to 0.15.
 double damage_time_step(const CrackGrowth& growth, const FractureState& state, double most,
                         std::span<const double> damage, std::span<const std::uint8_t> body,
                         std::uint8_t which);
