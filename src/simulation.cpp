@@ -78,7 +78,8 @@ double Simulation::interaction_radius() const {
 void Simulation::arrange() {
     if (!grid_ || setup_.sph.variable_smoothing_length) {
         double radius = interaction_radius();
-        if (setup_.sph.variable_smoothing_length) radius = CellGrid::ladder_radius(radius);
+        if (setup_.sph.variable_smoothing_length)  // they may grow in this step, once cells and halo are made
+            radius = CellGrid::ladder_radius(radius * sph::largest_growth);
         if (!grid_ || radius != grid_radius_) {
             grid_ = std::make_unique<CellGrid>(setup_.box, radius, cells_per_radius);
             grid_radius_ = radius;
@@ -150,6 +151,10 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     if (settings.density == sph::DensityMethod::summation || settings.variable_smoothing_length) {
         overlapped(Phase::density, {&field::position, &field::mass},
                    [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });
+        if (settings.variable_smoothing_length) {
+            const auto next = particles_.own(field::next_smoothing_length);
+            std::copy(next.begin(), next.end(), particles_.data(field::smoothing_length));
+        }
     }
     phases_.enter(Phase::material);
     material_response(damage_time);
@@ -176,10 +181,6 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
             {&field::position, &field::mass, &field::smoothing_length, &field::predicted_velocity,
              &field::predicted_density, &field::pressure, &field::sound_speed, &field::predicted_stress},
             [&](Cells cells) { sph::standard_pass(particles_, table, cells, settings, pass_count_); });
-    if (settings.variable_smoothing_length) {  // only now: cells and halo were made for the old ones
-        const auto next = particles_.own(field::next_smoothing_length);
-        std::copy(next.begin(), next.end(), particles_.data(field::smoothing_length));
-    }
     hold_bodies();
     pairs_ += pass_count_.pairs;
     work_measured_ = true;

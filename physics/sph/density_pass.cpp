@@ -64,6 +64,7 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
             if (!next_h) continue;
             const double smoothed = sum(i, widening);
             next_h[i] = settings.eta * std::pow(mass[i] / smoothed, 1.0 / D);
+            next_h[i] = std::min(next_h[i], largest_growth * h[i]);
             if (settings.largest_smoothing_length > 0)
                 next_h[i] = std::min(next_h[i], settings.largest_smoothing_length);
         }

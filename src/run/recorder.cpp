@@ -176,8 +176,11 @@ void Recorder::stop_early(Simulation& simulation, const std::string& why) {
 void Recorder::finish(Simulation& simulation) {
     files_->progress->finish();
     write_checkpoint_now(simulation);
-    if (setup_.output.snapshot_interval <= 0 && simulation.step_count() > 0)
-        write_snapshot_now(simulation, 1);
+    if (last_snapshot_step_ != simulation.step_count()) {  // the last state, due or not
+        const double interval = setup_.output.snapshot_interval;
+        write_snapshot_now(simulation,
+                           1 + (interval > 0 ? static_cast<int>(simulation.time() / interval) : 0));
+    }
     write_analysis(simulation);
     print_summary(simulation);
 }
@@ -203,6 +206,7 @@ void Recorder::write_checkpoint_now(Simulation& simulation) {
 }
 
 void Recorder::write_snapshot_now(Simulation& simulation, int index) {
+    last_snapshot_step_ = simulation.step_count();
     const ParticleSet& particles = simulation.particles();
     std::vector<SnapshotField> fields;
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{

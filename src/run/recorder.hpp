@@ -57,7 +57,7 @@ class Recorder {
     std::filesystem::path last_checkpoint_;
     std::chrono::steady_clock::time_point last_checkpoint_time_, step_began_, began_;
     double time_before_ = 0, longest_step_ = 0, first_energy_ = 0;
-    std::uint64_t first_step_ = 0;
+    std::uint64_t first_step_ = 0, last_snapshot_step_ = ~std::uint64_t{0};
 };
 
 }  // namespace talus

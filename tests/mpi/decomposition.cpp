@@ -240,10 +240,11 @@ TEST(Decomposition, RebalancingLowersTheImbalance) {
     decomposition.expect(particles);
     decomposition.divide(particles, grid);
     decomposition.arrange(particles, grid);
-    const auto work = [&] {  // a particle low in x costs ten times as much
+    const auto work = [&] {  // particles of one octant cost ten times as much
         std::vector<double> result;
         for (const CellEntry& cell : decomposition.own_cells())
-            result.push_back((cell.end - cell.begin) * (cell_of(cell.key)[0] < 10 ? 10.0 : 1.0));
+            result.push_back((cell.end - cell.begin) *
+                             (std::ranges::max(cell_of(cell.key)) < 16 ? 10.0 : 1.0));
         return result;
     };
     EXPECT_TRUE(decomposition.rebalance(work()));
