@@ -54,6 +54,7 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
     const double widening = settings.smoothing_widening;
     DensitySum<D, Kernel> sum(particles, kernel, std::max(1.0, widening));
     const double* mass = particles.data(field::mass);
+    const double* h = particles.data(field::smoothing_length);
     double* density = particles.data(field::predicted_density);
     double* next_h =
         settings.variable_smoothing_length ? particles.data(field::next_smoothing_length) : nullptr;
