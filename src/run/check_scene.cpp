@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "src/run/commands.hpp"
+#include "src/run/warnings.hpp"
 #include "src/setup/scene_setup.hpp"
 
 namespace talus {
@@ -59,6 +60,7 @@ int check_scene(const Communicator& comm, const RunOptions& options) {
                    setup.simulation.materials[b].name, setup.bodies[b].spacing);
     fmt::print("equations of state:\n");
     for (const Material& material : setup.simulation.materials) print_scan(material);
+    for (const std::string& warning : warnings(setup.simulation)) fmt::print("note: {}\n", warning);
     print_fields(simulation.particles());
     const double bytes = static_cast<double>(simulation.particles().bytes_per_particle());
     const double steps = setup.output.end_time / first_step;

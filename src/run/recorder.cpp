@@ -14,6 +14,7 @@
 #include "io/csv.hpp"
 #include "io/progress.hpp"
 #include "io/snapshot.hpp"
+#include "src/run/warnings.hpp"
 
 namespace talus {
 
@@ -130,6 +131,8 @@ void Recorder::begin(Simulation& simulation, double end_time) {
             simulation.total_particles(), comm_.size(), simulation.particles().bytes_per_particle(),
             simulation.time_step(), folder_.string());
     }
+    if (comm_.is_root())
+        for (const std::string& warning : warnings(setup_.simulation)) files_->log->warn("note: {}", warning);
     files_->diagnostics = std::make_unique<CsvWriter>(
         comm_, folder_ / "diagnostics.csv", diagnostics_columns,
         is_new ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));

@@ -1,0 +1,39 @@
+#include "src/run/warnings.hpp"
+
+#include <fmt/format.h>
+
+namespace talus {
+
+namespace {
+
+/// Expanded matter may be unphysical there, where the floor of the sound speed acts; matter near or above its
+/// density at rest must not.
+void warn_of_imaginary_sound(const Material& material, std::vector<std::string>& found) {
+    constexpr double expanded = 0.95;  // of the density at rest
+    const auto* tillotson = std::get_if<Tillotson>(&material.eos);
+    if (!tillotson) return;
+    const ScanResult result = scan(*tillotson);
+    if (result.densest_imaginary < expanded * tillotson->reference_density) return;
+    found.push_back(fmt::format(
+        "{}: c^2 < 0 in {} of {} states scanned, up to {:.4g} kg/m3 ({:.2f} of rest), worst "
+        "at {:.4g} kg/m3 and {:.4g} J/kg; check its constants",
+        material.name, result.imaginary, result.points, result.densest_imaginary,
+        result.densest_imaginary / tillotson->reference_density, result.at_density, result.at_energy));
+}
+
+}  // namespace
+
+std::vector<std::string> warnings(const Setup& setup) {
+    std::vector<std::string> found;
+    for (const Material& material : setup.materials) warn_of_imaginary_sound(material, found);
+    const sph::Settings& sph = setup.sph;
+    if (setup.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5)
+        found.push_back(
+            fmt::format("sph.cutoff = {}: compressed matter in 3D forms pairs where a pressure of a tenth of "
+                        "the bulk modulus or "
+                        "more lasts for some 60 spacings/c; sph.cutoff = 2.5 does not, at twice the partners",
+                        sph.cutoff));
+    return found;
+}
+
+}  // namespace talus
