@@ -14,6 +14,7 @@ namespace talus {
 
 namespace {
 constexpr int cells_per_radius = 1;
+constexpr double room_to_grow = 1.3;  // of the largest smoothing length in a step
 
 bool has_strength(const Setup& setup) {
     return std::any_of(setup.materials.begin(), setup.materials.end(),
@@ -70,16 +71,23 @@ Simulation::Simulation(const Communicator& comm, Setup setup, ParticleSet partic
 double Simulation::interaction_radius() const {
     double largest = 0;
     for (const double h : particles_.own(field::smoothing_length)) largest = std::max(largest, h);
-    const double support =
-        std::max(setup_.sph.force_support(), setup_.sph.kernel_support() * setup_.sph.smoothing_widening);
-    return comm_.all_max(largest) * support;
+    return comm_.all_max(largest) * range_of_interaction();
+}
+
+double Simulation::range_of_interaction() const {
+    return std::max(setup_.sph.force_support(), setup_.sph.kernel_support() * setup_.sph.smoothing_widening);
 }
 
 void Simulation::arrange() {
     if (!grid_ || setup_.sph.variable_smoothing_length) {
-        double radius = interaction_radius();
-        if (setup_.sph.variable_smoothing_length)  // they may grow in this step, once cells and halo are made
-            radius = CellGrid::ladder_radius(radius * sph::largest_growth);
+        const double needed = interaction_radius();
+        double radius = needed;
+        if (setup_.sph.variable_smoothing_length) {  // room to grow in the step, once cells and halo are made
+            radius = CellGrid::ladder_radius(needed * room_to_grow);
+            for (int axis = 0; axis < setup_.box.dimension; ++axis)
+                if (setup_.box.boundary[static_cast<std::size_t>(axis)] != Boundary::open)
+                    radius = std::max(needed, std::min(radius, setup_.box.length(axis)));
+        }
         if (!grid_ || radius != grid_radius_) {
             grid_ = std::make_unique<CellGrid>(setup_.box, radius, cells_per_radius);
             grid_radius_ = radius;
@@ -152,8 +160,10 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
         overlapped(Phase::density, {&field::position, &field::mass},
                    [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });
         if (settings.variable_smoothing_length) {
-            const auto next = particles_.own(field::next_smoothing_length);
-            std::copy(next.begin(), next.end(), particles_.data(field::smoothing_length));
+            const double most = grid_->covered_radius() / range_of_interaction();
+            double* h = particles_.data(field::smoothing_length);
+            for (const double next : particles_.own(field::next_smoothing_length))
+                *h++ = std::min(next, most);
         }
     }
     phases_.enter(Phase::material);

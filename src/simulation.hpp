@@ -83,6 +83,8 @@ class Simulation {
     Totals totals() const;
 
   private:
+    /// Interaction radius in smoothing lengths.
+    double range_of_interaction() const;
     void arrange();
     void rebalance();
     void evaluate(double time_ahead, double damage_time);

@@ -54,7 +54,6 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
     const double widening = settings.smoothing_widening;
     DensitySum<D, Kernel> sum(particles, kernel, std::max(1.0, widening));
     const double* mass = particles.data(field::mass);
-    const double* h = particles.data(field::smoothing_length);
     double* density = particles.data(field::predicted_density);
     double* next_h =
         settings.variable_smoothing_length ? particles.data(field::next_smoothing_length) : nullptr;
@@ -65,7 +64,6 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
             if (!next_h) continue;
             const double smoothed = sum(i, widening);
             next_h[i] = settings.eta * std::pow(mass[i] / smoothed, 1.0 / D);
-            next_h[i] = std::min(next_h[i], largest_growth * h[i]);
             if (settings.largest_smoothing_length > 0)
                 next_h[i] = std::min(next_h[i], settings.largest_smoothing_length);
         }

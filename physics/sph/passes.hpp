@@ -19,9 +19,6 @@ struct PassCount {
     std::vector<double> work_of_cell;
 };
 
-/// Most that a smoothing length grows in one step: what cells and halo allow for.
-inline constexpr double largest_growth = 1.3;
-
 /// Density by summation, rho_i = sum_j m_j W(r_ij, h_i), into predicted_density; with a variable smoothing
 /// length also the new smoothing_length h_i = eta (m_i / rho*_i)^(1/D), rho* smoothed over smoothing_widening
 /// * h_i. Reads position, mass, smoothing_length of partners.
