@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <vector>
 
 #include "comm/communicator.hpp"
 #include "comm/decomposition.hpp"
@@ -15,6 +16,7 @@ struct SampleChoice {
     bool variable_h = false;
     bool bodies = false;
     bool quintic = false;
+    bool gaps = false;  ///< lumps left out at random: cells with nothing on one side or another
     Boundary boundary = Boundary::open;
 };
 
@@ -92,22 +94,33 @@ class SphSample {
         const int D = choice.dimension;
         std::size_t count = 1;
         for (int a = 0; a < D; ++a) count *= static_cast<std::size_t>(choice.side);
-        particles.resize(comm.is_root() ? count : 0);
-        const double mass = density * std::pow(spacing, D);
-        for (std::size_t k = 0; k < particles.size(); ++k) {
-            particles.data(field::id)[k] = k;
-            std::size_t rest = k;
-            for (int a = 0; a < D; ++a) {
-                const double cell = static_cast<double>(rest % static_cast<std::size_t>(choice.side));
-                rest /= static_cast<std::size_t>(choice.side);
-                const double jitter = 0.4 * (random.uniform(k, static_cast<std::uint32_t>(a)) - 0.5);
-                particles.data(field::position, a)[k] = (cell + 0.5 + jitter) * spacing;
-            }
-            particles.data(field::mass)[k] = mass * (1 + 0.1 * (random.uniform(k, 3) - 0.5));
-            particles.data(field::smoothing_length)[k] =
-                spacing * (choice.variable_h ? 1 + 0.3 * (random.uniform(k, 4) - 0.5) : 1);
-            particles.data(field::body)[k] = random.uniform(k, 5) < 0.3 && choice.bodies ? 1 : 0;
+        std::vector<std::size_t> kept;
+        const std::size_t lump = 6, lumps = static_cast<std::size_t>(choice.side) / lump + 1;
+        for (std::size_t k = 0; comm.is_root() && k < count; ++k) {
+            std::size_t rest = k, where = 0;
+            for (int a = 0; a < D; ++a, rest /= static_cast<std::size_t>(choice.side))
+                where = where * lumps + rest % static_cast<std::size_t>(choice.side) / lump;
+            if (!choice.gaps || random.uniform(where, 6) < 0.4) kept.push_back(k);
         }
+        particles.resize(kept.size());
+        const double mass = density * std::pow(spacing, D);
+        for (std::size_t i = 0; i < kept.size(); ++i) place_one(choice, i, kept[i], mass);
+    }
+    /// Particle i of the set, at place `id` of the lattice.
+    void place_one(const SampleChoice& choice, std::size_t i, std::size_t id, double mass) {
+        const int D = choice.dimension;
+        particles.data(field::id)[i] = id;
+        std::size_t rest = id;
+        for (int a = 0; a < D; ++a) {
+            const double cell = static_cast<double>(rest % static_cast<std::size_t>(choice.side));
+            rest /= static_cast<std::size_t>(choice.side);
+            const double jitter = 0.4 * (random.uniform(id, static_cast<std::uint32_t>(a)) - 0.5);
+            particles.data(field::position, a)[i] = (cell + 0.5 + jitter) * spacing;
+        }
+        particles.data(field::mass)[i] = mass * (1 + 0.1 * (random.uniform(id, 3) - 0.5));
+        particles.data(field::smoothing_length)[i] =
+            spacing * (choice.variable_h ? 1 + 0.3 * (random.uniform(id, 4) - 0.5) : 1);
+        particles.data(field::body)[i] = random.uniform(id, 5) < 0.3 && choice.bodies ? 1 : 0;
     }
 
     void fill(const SampleChoice& choice) {

@@ -182,8 +182,7 @@ TEST(ShockTubes, SodIn3dConverges) {
     run_sod_in_3d({8, 12, 16}, {{{{2.1e-2, 5.3e-2, 2.0e-2}, 0.7}, {{2.0e-2, 4.0e-2, 2.1e-2}, 0.45}}});
 }
 
-// A minute or more; for the README.
-TEST(ShockTubes, DISABLED_SodIn3dConvergesFurther) {
+TEST(ShockTubes, SodIn3dConvergesFurther) {
     run_sod_in_3d({8, 16, 32}, {{{{1.2e-2, 2.9e-2, 1.2e-2}, 0.7}, {{1.4e-2, 3.0e-2, 1.4e-2}, 0.4}}});
 }
 
