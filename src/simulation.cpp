@@ -121,7 +121,7 @@ void Simulation::resume(double time, double time_step, std::uint64_t step) {
 void Simulation::step() {
     const double dt = time_step_;
     phases_.enter(Phase::motion);
-    sph::kick(particles_, shear_moduli_, dt / 2);
+    sph::kick(particles_, shear_moduli_, setup_.sph, dt / 2);
     sph::drift(particles_, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
@@ -129,7 +129,7 @@ void Simulation::step() {
     arrange();
     evaluate(dt / 2, dt);
     phases_.enter(Phase::motion);
-    sph::kick(particles_, shear_moduli_, dt / 2);
+    sph::kick(particles_, shear_moduli_, setup_.sph, dt / 2);
     time_ += dt;
     ++step_;
     check_finite();
@@ -155,7 +155,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     };
 
     phases_.enter(Phase::motion);
-    sph::predict(particles_, shear_moduli_, time_ahead);
+    sph::predict(particles_, shear_moduli_, setup_.sph, time_ahead);
     if (settings.density == sph::DensityMethod::summation || settings.variable_smoothing_length) {
         overlapped(Phase::density, {&field::position, &field::mass},
                    [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });

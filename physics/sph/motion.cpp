@@ -29,19 +29,20 @@ double divergence(const std::array<const double*, D * D>& gradient, std::size_t 
 }
 
 /// The least density that the continuity equation may lead to [kg/m3]: a lone particle's own share of the
-/// density summed with the Gaussian. Gradients over a handful of partners mean little, and matter all but
-/// without density next to denser matter would be thrown about by it (V_ij^2 grows as 1/rho^2). The code of
-/// K. Sugiura et al., Astron. Astrophys. 620 (2018) A167, stops at 200 kg/m3 for the same reason.
+/// density summed with the Gaussian that ends at twice its h. Gradients over a handful of partners mean
+/// little, and matter all but without density next to denser matter would be thrown about by it (V_ij^2 grows
+/// as 1/rho^2). The code of K. Sugiura et al., Astron. Astrophys. 620 (2018) A167, stops at 200 kg/m3 for the
+/// same reason.
 template <int D>
-double least_density(double mass, double smoothing_length) {
+double least_density(double mass, double range) {
     double volume = 1;
-    for (int d = 0; d < D; ++d) volume *= std::sqrt(std::numbers::pi) * smoothing_length;
+    for (int d = 0; d < D; ++d) volume *= 0.5 * std::sqrt(std::numbers::pi) * range;
     return mass / volume;
 }
 
 /// Writes the state moved by `time` into the given fields, which may be those of the state itself.
 template <int D>
-void advance(ParticleSet& particles, std::span<const double> shear_moduli, double time,
+void advance(ParticleSet& particles, std::span<const double> shear_moduli, double kernel_support, double time,
              const Field<double>& to_velocity, const Field<double>& to_energy,
              const Field<double>& to_density, const Field<double>& to_stress) {
     const auto v = components<D>(particles, field::velocity),
@@ -67,7 +68,7 @@ void advance(ParticleSet& particles, std::span<const double> shear_moduli, doubl
     const double *mass = particles.data(field::mass), *h = particles.data(field::smoothing_length);
     for (std::size_t i = 0; i < particles.size(); ++i)
         new_density[i] = std::max(density[i] * std::exp(-divergence<D>(gradient, i) * time),
-                                  least_density<D>(mass[i], h[i]));
+                                  least_density<D>(mass[i], kernel_support * h[i]));
 
     if (!particles.has(field::deviatoric_stress)) return;
     constexpr int N = symmetric_count<D>;
@@ -86,17 +87,20 @@ void advance(ParticleSet& particles, std::span<const double> shear_moduli, doubl
 
 }  // namespace
 
-void kick(ParticleSet& particles, std::span<const double> shear_moduli, double time) {
+void kick(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
+          double time) {
     with_dimension(particles, [&](auto dimension) {
-        advance<dimension>(particles, shear_moduli, time, field::velocity, field::internal_energy,
-                           field::density, field::deviatoric_stress);
+        advance<dimension>(particles, shear_moduli, settings.kernel_support(), time, field::velocity,
+                           field::internal_energy, field::density, field::deviatoric_stress);
     });
 }
 
-void predict(ParticleSet& particles, std::span<const double> shear_moduli, double time) {
+void predict(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
+             double time) {
     with_dimension(particles, [&](auto dimension) {
-        advance<dimension>(particles, shear_moduli, time, field::predicted_velocity, field::predicted_energy,
-                           field::predicted_density, field::predicted_stress);
+        advance<dimension>(particles, shear_moduli, settings.kernel_support(), time,
+                           field::predicted_velocity, field::predicted_energy, field::predicted_density,
+                           field::predicted_stress);
     });
 }
 

@@ -13,13 +13,15 @@ namespace talus::sph {
 /// set does not have (density when summed, stress in fluids) are left out.
 
 /// Moves the state `time` forward with the rates of the last evaluation. `shear_moduli`: one a body [Pa].
-void kick(ParticleSet& particles, std::span<const double> shear_moduli, double time);
+void kick(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
+          double time);
 
 /// Positions: x += v time.
 void drift(ParticleSet& particles, double time);
 
 /// Fills the predicted fields with the state moved `time` forward by the rates of the last evaluation.
-void predict(ParticleSet& particles, std::span<const double> shear_moduli, double time);
+void predict(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
+             double time);
 
 /// What limits the time step, for messages.
 struct StepLimit {

@@ -58,13 +58,19 @@ constexpr Interpolation stable_stretched(int dimension) {
     return dimension == 1 ? Interpolation::quintic : Interpolation::cubic;
 }
 
-/// Where the Gaussian is cut [h]. At 2 h its slope ends at 1.8 % of the peak, and compressed matter in 3D
-/// pairs, fluids within some ten crossings of a spacing. Solids keep 2 h all the same, a third of the
-/// partners: their pairs take several times as long, longer than shocks last.
-constexpr double default_cutoff(int dimension, bool solid) {
-    if (dimension == 1) return 4;
-    if (dimension == 2) return 3;
-    return solid ? 2 : 2.5;
+/// Width of the Gaussian in spacings and where it is cut [h], Godunov SPH.
+struct GaussianDefaults {
+    double eta, cutoff;
+};
+
+/// In 1D and 2D a cut far out costs little. In 3D compressed lattices pair the faster the more the slope of
+/// the Gaussian jumps at its end, so that for given partners the narrower one is the more stable; below 0.7
+/// spacings stretched ones clump (docs/decisions/010-width-of-the-gaussian.md). Gases, whose smoothing length
+/// varies, shear their lattice in a shock, and need a wider one to be right behind it.
+constexpr GaussianDefaults gaussian_defaults(int dimension, bool variable_smoothing_length) {
+    if (dimension == 1) return {1, 4};
+    if (dimension == 2) return {1, 3};
+    return variable_smoothing_length ? GaussianDefaults{1, 2.5} : GaussianDefaults{0.72, 2.78};
 }
 
 }  // namespace talus::sph

@@ -27,12 +27,14 @@ std::vector<std::string> warnings(const Setup& setup) {
     std::vector<std::string> found;
     for (const Material& material : setup.materials) warn_of_imaginary_sound(material, found);
     const sph::Settings& sph = setup.sph;
-    if (setup.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5)
-        found.push_back(
-            fmt::format("sph.cutoff = {}: compressed matter in 3D forms pairs where a pressure of a tenth of "
-                        "the bulk modulus or "
-                        "more lasts for some 60 spacings/c; sph.cutoff = 2.5 does not, at twice the partners",
-                        sph.cutoff));
+    if (setup.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5) {
+        const auto [eta, cutoff] = sph::gaussian_defaults(3, false);
+        found.push_back(fmt::format(
+            "sph.cutoff = {}: compressed matter in 3D forms pairs where a pressure of a tenth of "
+            "the bulk modulus or more lasts for some 60 spacings/c; sph.eta = {} with sph.cutoff = "
+            "{} has as few partners and does not",
+            sph.cutoff, eta, cutoff));
+    }
     return found;
 }
 

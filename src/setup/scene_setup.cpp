@@ -93,8 +93,6 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         settings.viscosity_alpha = table.number("viscosity_alpha", "1", 1.0, not_negative);
         settings.viscosity_beta = table.number("viscosity_beta", "1", 2.0, not_negative);
     }
-    if (settings.kernel == sph::KernelKind::gaussian)
-        settings.cutoff = table.number("cutoff", "1", sph::default_cutoff(dimension, any_strength), {1, 4});
     const std::string density = all_gas ? "summation" : "continuity";
     settings.density = table.choice("density", {"continuity", "summation"}, density) == "summation"
                            ? sph::DensityMethod::summation
@@ -103,13 +101,20 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
         table.error("density", "a solid with strength needs density = \"continuity\"");
     settings.variable_smoothing_length = table.choice("smoothing_length", {"constant", "variable"},
                                                       all_gas ? "variable" : "constant") == "variable";
-    settings.eta = table.number("eta", "1", godunov ? 1.0 : dimension == 1 ? 1.6 : 1.3, {0.5, 5});
+    double eta = dimension == 1 ? 1.6 : dimension == 2 ? 1.3 : 1.45, courant = 0.3;
+    if (godunov) {
+        const auto [width, cutoff] = sph::gaussian_defaults(dimension, settings.variable_smoothing_length);
+        settings.cutoff = table.number("cutoff", "1", cutoff, {1, 4});
+        eta = width;
+        courant = 0.5 / width;
+    }
+    settings.eta = table.number("eta", "1", eta, {0.5, 5});
     if (settings.variable_smoothing_length) {
         settings.smoothing_widening = table.number("smoothing_widening", "1", 1.0, {1, 5});
         if (table.has("largest_smoothing_length"))
             settings.largest_smoothing_length = table.number("largest_smoothing_length", "m", {}, positive);
     }
-    settings.courant = table.number("courant", "1", godunov ? 0.5 : 0.3, {0, 2, true});
+    settings.courant = table.number("courant", "1", courant, {0, 2, true});
     return settings;
 }
 

@@ -20,7 +20,8 @@ struct LatticeCase {
     Lattice lattice = Lattice::cubic;
     double pressure = 0;  ///< P/(rho c^2), of either sign
     sph::Interpolation compressed = sph::Interpolation::linear, stretched = sph::Interpolation::linear;
-    double cutoff = 3.05;  ///< no shell of a cubic lattice lies at it, nor at sqrt2 of it
+    double smoothing_length = 1;
+    double cutoff = 3.05;  ///< [h] no shell of a cubic lattice lies at it, nor at sqrt2 of it
     sph::DensityMethod density = sph::DensityMethod::continuity;
     bool riemann = false;      ///< false: no dissipation
     double shear_modulus = 0;  ///< mu/(rho c^2)
@@ -37,14 +38,15 @@ struct LatticeState {
 template <int D>
 LatticeState lattice_state_in(const LatticeCase& lattice) {
     const sph::Gaussian<D> kernel(lattice.cutoff);
-    const int n = static_cast<int>(lattice.cutoff) + 1, ny = D > 1 ? n : 0, nz = D > 2 ? n : 0;
+    const double h = lattice.smoothing_length;
+    const int n = static_cast<int>(lattice.cutoff * h) + 1, ny = D > 1 ? n : 0, nz = D > 2 ? n : 0;
     double density = 0, moment = 0;
     for (int a = -n; a <= n; ++a)
         for (int b = -ny; b <= ny; ++b)
             for (int c = -nz; c <= nz; ++c) {
                 const double r2 = a * a + b * b + c * c;
-                density += std::max(kernel.value(r2, 1.0), 0.0);
-                moment -= a * a * kernel.factor(r2, 1.0);
+                density += std::max(kernel.value(r2, 1 / h), 0.0);
+                moment -= a * a * kernel.factor(r2, 1 / h);
             }
     if (lattice.density == sph::DensityMethod::continuity) density = 1;
     return {density, kernel.norm * std::pow(std::numbers::pi, 0.5 * D) / density, moment};
@@ -61,6 +63,7 @@ inline LatticeState lattice_state(const LatticeCase& lattice) {
 inline double omega_squared(const LatticeCase& lattice, double wavenumber) {
     const LatticeState state = lattice_state(lattice);
     reference::LatticeWave wave{.dimension = lattice.dimension,
+                                .smoothing_length = lattice.smoothing_length,
                                 .density = state.density,
                                 .pressure = lattice.pressure * state.density,
                                 .cutoff = lattice.cutoff,
@@ -160,6 +163,7 @@ class LatticeSimulation {
             {.name = "linear",
              .eos = LinearEquationOfState{.reference_density = density * (1 - lattice_.pressure),
                                           .sound_speed = 1},
+             .shear_modulus = lattice_.shear_modulus * density,
              .reference_density = density}};
         ParticleSet particles("lattice", dimension);
         add_fields(particles, setup);
@@ -175,7 +179,8 @@ class LatticeSimulation {
                 particles.data(field::position, axis)[i] = sites_[id][a] + off[a];
                 particles.data(field::velocity, axis)[i] = v[a];
             }
-            particles.data(field::mass)[i] = particles.data(field::smoothing_length)[i] = 1;
+            particles.data(field::mass)[i] = 1;
+            particles.data(field::smoothing_length)[i] = lattice_.smoothing_length;
             if (particles.has(field::density)) particles.data(field::density)[i] = density;
         }
         return Simulation(comm, setup, std::move(particles));

@@ -181,17 +181,18 @@ double closest_after(const Communicator& comm, const LatticeCase& lattice, doubl
 }
 
 /// Each sign of the pressure: the automatic choice without any dissipation; a fluid and a solid as scenes
-/// have them by default; and another choice, which must clump.
+/// have them by default, for longer; and another choice, which must clump. A clump has its particles at half
+/// the distance or less; a fluid in mere disorder, which it drifts into slowly, does not come below 0.8.
 TEST_P(TensileInstability, TheAutomaticChoiceIsStableForBothSignsOfPressure) {
     const int dimension = GetParam();
     struct Case {
         const char* what;
         LatticeCase lattice;
         bool stable = true;
-        double least = 0.85;
+        double crossings = 10;
     };
     std::vector<Case> cases;
-    for (const double pressure : {0.3, -0.3}) {
+    for (const double pressure : {1.0, 0.3, -0.3, -1.0}) {
         LatticeCase plain{.dimension = dimension,
                           .lattice = Lattice::close_packed,  // fluids shear a cubic lattice into this one
                           .pressure = pressure,
@@ -206,30 +207,32 @@ TEST_P(TensileInstability, TheAutomaticChoiceIsStableForBothSignsOfPressure) {
         LatticeCase fluid = plain, wrong = plain;
         fluid.density = sph::DensityMethod::continuity;
         fluid.riemann = true;
-        fluid.cutoff = sph::default_cutoff(dimension, false);
+        const auto [eta, cutoff] = sph::gaussian_defaults(dimension, false);
+        fluid.smoothing_length = eta;
+        fluid.cutoff = cutoff;
+        fluid.courant = 0.5 / eta;
         LatticeCase solid = fluid;
         solid.shear_modulus = 0.85;  // basalt
-        // The default of 3D solids, 2 h, is for events shorter than it takes compressed solids to form pairs.
-        solid.cutoff = std::max(sph::default_cutoff(dimension, true), 2.5);
         wrong.compressed = dimension == 1 ? Interpolation::quintic : Interpolation::cubic;
         wrong.stretched = Interpolation::linear;
-        cases.insert(cases.end(), {{"no dissipation", plain},
-                                   {"default fluid", fluid},
-                                   {"solid", solid},
+        if (std::abs(pressure) < 1) cases.push_back({"no dissipation", plain});
+        cases.insert(cases.end(), {{"default fluid", fluid, true, 25},
+                                   {"default solid", solid, true, 25},
                                    {"no dissipation", wrong, false}});
     }
     const auto closest = on_shared_ranks(cases.size(), [&](const Communicator& comm, std::size_t c) {
-        return closest_after(comm, cases[c].lattice, 10);
+        return closest_after(comm, cases[c].lattice, cases[c].crossings);
     });
     for (std::size_t c = 0; c < cases.size(); ++c) {
-        const auto& [what, lattice, stable, least] = cases[c];
+        const auto& [what, lattice, stable, crossings] = cases[c];
         if (stable)
-            EXPECT_GT(closest[c], least) << what << ", P = " << lattice.pressure;
+            EXPECT_GT(closest[c], 0.8) << what << ", P = " << lattice.pressure;
         else
             EXPECT_LT(closest[c], 0.5) << what << ", P = " << lattice.pressure;
         if (is_root())
-            fmt::print("| {} | {:+.1f} | {} | {} | {:.2f} |\n", dimension, lattice.pressure, what,
-                       name_of(lattice.pressure > 0 ? lattice.compressed : lattice.stretched), closest[c]);
+            fmt::print("| {} | {:+.1f} | {} | {} | {:.0f} | {:.2f} |\n", dimension, lattice.pressure, what,
+                       name_of(lattice.pressure > 0 ? lattice.compressed : lattice.stretched),
+                       crossings * lattice.size[0], closest[c]);
     }
 }
 
