@@ -68,22 +68,19 @@ double read_spacing(const Section& table, const Body& body, const BodyContext& c
 
 /// Angular velocity from `spin`, or from a period and an axis.
 Point read_spin(const Section& table, int dimension) {
-    if (table.has("spin") && table.has("spin_period"))
-        table.error("spin_period", "give spin or spin_period, not both");
-    if (table.has("spin_period")) {
-        Point axis{0, 0, 1};
-        if (dimension == 3) axis = read_point(table, "spin_axis", "1", 3, {{0, 0, 1}});
-        const double length = norm(axis);
-        const double period = table.number("spin_period", "s", {}, positive);
-        if (length == 0) {
-            table.error("spin_axis", "has no direction");
-            return {};
-        }
-        return times(2 * std::numbers::pi / period / length, axis);
+    Point spin{};
+    if (table.has("spin"))
+        spin = dimension == 3 ? read_point(table, "spin", "rad/s", 3)
+                              : Point{0, 0, table.number("spin", "rad/s")};
+    if (!table.has("spin_period")) return spin;
+    if (table.has("spin")) table.error("spin_period", "give spin or spin_period, not both");
+    const Point axis = dimension == 3 ? read_point(table, "spin_axis", "1", 3, {{0, 0, 1}}) : Point{0, 0, 1};
+    const double length = norm(axis), period = table.number("spin_period", "s", {}, positive);
+    if (length == 0) {
+        table.error("spin_axis", "has no direction");
+        return spin;
     }
-    if (!table.has("spin")) return {};
-    if (dimension == 3) return read_point(table, "spin", "rad/s", 3);
-    return {0, 0, table.number("spin", "rad/s")};
+    return times(2 * std::numbers::pi / period / length, axis);
 }
 
 /// Specific internal energy: given, or from a given pressure of a gas.

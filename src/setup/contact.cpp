@@ -83,7 +83,8 @@ class Silhouette {
                 if (std::abs(start[k]) > half) return {};
                 continue;
             }
-            const auto [from, to] = std::minmax((-half - start[k]) / along[k], (half - start[k]) / along[k]);
+            const auto [from, to] =
+                std::minmax({(-half - start[k]) / along[k], (half - start[k]) / along[k]});
             span.from = std::max(span.from, from);
             span.to = std::min(span.to, to);
         }
@@ -109,8 +110,8 @@ Rotation frame_along(const Point& direction) {
 
 }  // namespace
 
-std::optional<double> contact_distance(const BodyShape& first, const BodyShape& second, const Point& direction,
-                                       const Point& aside, int dimension) {
+std::optional<double> contact_distance(const BodyShape& first, const BodyShape& second,
+                                       const Point& direction, const Point& aside, int dimension) {
     const auto* ball = std::get_if<SphereShape>(&first);
     const auto* other = std::get_if<SphereShape>(&second);
     if (ball && other) {
@@ -127,7 +128,8 @@ std::optional<double> contact_distance(const BodyShape& first, const BodyShape& 
     Point at = small_first ? Point{} : shift;
     const auto look = [&](double half_width, int lines_each_side) {
         const Point middle = at;
-        const int lines_in_z = dimension == 3 ? lines_each_side : 0, lines_in_y = dimension >= 2 ? lines_each_side : 0;
+        const int lines_in_z = dimension == 3 ? lines_each_side : 0,
+                  lines_in_y = dimension >= 2 ? lines_each_side : 0;
         for (int k = -lines_in_z; k <= lines_in_z; ++k)
             for (int j = -lines_in_y; j <= lines_in_y; ++j) {
                 const double y = middle[1] + half_width * j / lines_each_side,

@@ -14,7 +14,7 @@ constexpr double reach = 2.5;          // of the repulsion, in spacings
 constexpr double skin = 0.6;           // by which listed pairs may be farther apart
 constexpr double kept_velocity = 0.9;  // share left after a step
 constexpr double step_length = 0.06;   // twice as much is still stable
-constexpr int steps = 150;             // the density is even to 0.2 % then, and no more after ten times as many
+constexpr int steps = 150;  // the density is even to 0.2 % then, and no more after ten times as many
 
 /// A cubic periodic cell with one point per unit volume.
 class PeriodicCell {
@@ -37,10 +37,10 @@ class PeriodicCell {
         for (const auto& [i, j] : pairs_) {
             const Point apart = separation(i, j);
             const double r = norm(apart);
-            if (r >= reach || r == 0) continue;
+            if (r >= reach) continue;
             // Minus the slope of Wendland's C2 kernel: H. Wendland, Adv. Comput. Math. 4 (1995) 389.
-            const double q = r / reach, push = 20 * q * (1 - q) * (1 - q) * (1 - q);
-            const Point force = times(push / r, apart);
+            const double near = 1 - r / reach;
+            const Point force = times(20 / reach * near * near * near, apart);
             forces[i] = plus(forces[i], force);
             forces[j] = minus(forces[j], force);
         }

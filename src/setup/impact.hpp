@@ -14,9 +14,9 @@ struct ImpactPlan {
     double speed = 0;                      ///< relative speed [m/s]
     bool speed_at_infinity = false;        ///< else at contact
     double angle = 0;                      ///< at contact, between the velocity and the line of centres [rad]
-    std::optional<double> offset;          ///< at contact, instead of the angle [m]
+    std::optional<double> offset{};        ///< at contact, instead of the angle [m]
     double gap = 1;                        ///< between the surfaces at the start, in spacings [1]
-    std::optional<double> distance;        ///< of the centres at the start, instead of the gap [m]
+    std::optional<double> distance{};      ///< of the centres at the start, instead of the gap [m]
     bool along_orbit = false;              ///< back from contact under mutual gravity, else straight
     bool centre_of_mass_frame = true;      ///< else that of the target
 };
@@ -28,16 +28,16 @@ struct Contact {
     double speed;     ///< relative [m/s]
 };
 
-/// Position and velocity of the impactor's centre relative to the target's. The velocity at contact is along -x,
-/// the impact parameter along y.
+/// Position and velocity of the impactor's centre relative to the target's. The velocity at contact is along
+/// -x, the impact parameter along y.
 struct RelativeState {
     Point position;  ///< [m]
     Point velocity;  ///< [m/s]
 };
 
-/// The state from which two bodies come into contact, at a greater distance of their centres: back in time on the
-/// Kepler orbit of two points, or straight if `gravitational_parameter` G (m1 + m2) [m3/s2] is zero. Nothing if
-/// they never were that far apart.
+/// The state from which two bodies come into contact, at a greater distance of their centres: back in time on
+/// the Kepler orbit of two points, or straight if `gravitational_parameter` G (m1 + m2) [m3/s2] is zero.
+/// Nothing if they never were that far apart.
 std::optional<RelativeState> state_before(const Contact& contact, double distance,
                                           double gravitational_parameter);
 
@@ -61,8 +61,8 @@ struct PlannedImpact {
 PlannedImpact plan_impact(const ImpactPlan& plan, const std::vector<Body>& bodies,
                           const std::vector<BodyCensus>& census, int dimension);
 
-/// Moves the two bodies of an impact to where they start and gives them their velocities. In the centre-of-mass
-/// frame the momentum and the first moment of their particles vanish.
+/// Moves the two bodies of an impact to where they start and gives them their velocities. In the
+/// centre-of-mass frame the momentum and the first moment of their particles vanish.
 void place(const Impact& impact, std::vector<Body>& bodies, std::vector<BodyCensus>& census);
 
 }  // namespace talus

@@ -13,12 +13,13 @@ constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
 constexpr Range not_negative{0};
 
 /// Index of the body that a key names; by default the one at `index`.
-std::size_t read_participant(const Section& table, std::string_view key, const std::vector<std::string>& names,
-                             std::size_t index) {
+std::size_t read_participant(const Section& table, std::string_view key,
+                             const std::vector<std::string>& names, std::size_t index) {
     const std::string name = table.text(key, names[index]);
     if (std::count(names.begin(), names.end(), name) != 1) {
         std::string known;
-        for (const std::string& each : names) known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", each);
+        for (const std::string& each : names)
+            known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", each);
         table.error(key, fmt::format("must name one body; the bodies are {}", known));
         return index;
     }
@@ -27,20 +28,18 @@ std::size_t read_participant(const Section& table, std::string_view key, const s
 
 void read_geometry(const Section& table, ImpactPlan& plan) {
     if (table.has("angle") && table.has("offset")) table.error("offset", "give angle or offset, not both");
-    if (table.has("offset"))
-        plan.offset = table.number("offset", "m", {}, not_negative);
-    else
+    if (table.has("offset")) plan.offset = table.number("offset", "m", {}, not_negative);
+    if (table.has("angle") || !plan.offset)
         plan.angle = table.number("angle", "rad", 0.0, {0, std::numbers::pi / 2});
     if (table.has("distance") && table.has("gap")) table.error("gap", "give distance or gap, not both");
-    if (table.has("distance"))
-        plan.distance = table.number("distance", "m", {}, positive);
-    else
-        plan.gap = table.number("gap", "1", 1.0, not_negative);
+    if (table.has("distance")) plan.distance = table.number("distance", "m", {}, positive);
+    if (table.has("gap") || !plan.distance) plan.gap = table.number("gap", "1", 1.0, not_negative);
 }
 
 }  // namespace
 
-std::optional<ImpactPlan> read_impact(const Section& root, const std::vector<std::string>& names, int dimension) {
+std::optional<ImpactPlan> read_impact(const Section& root, const std::vector<std::string>& names,
+                                      int dimension) {
     const Section table = root.section("impact");
     if (!table.exists()) return {};
     ImpactPlan plan;
@@ -55,7 +54,7 @@ std::optional<ImpactPlan> read_impact(const Section& root, const std::vector<std
         return {};
     }
     plan.speed = table.number("speed", "m/s", {}, positive);
-    plan.speed_at_infinity = table.choice("speed_at", {"contact", "infinity"}) == "infinity";
+    plan.speed_at_infinity = table.choice("speed_at", {"contact", "infinity"}, "contact") == "infinity";
     read_geometry(table, plan);
     const std::string approach = root.section("gravity").exists() ? "orbit" : "straight";
     plan.along_orbit = table.choice("approach", {"straight", "orbit"}, approach) == "orbit";

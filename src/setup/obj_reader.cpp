@@ -56,8 +56,8 @@ Polyhedron parse_obj(const std::string& text) {
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 const int index = shape.mesh.indices[k + corner].vertex_index;
                 if (index < 0 || static_cast<std::size_t>(index) >= vertex_of.size())
-                    throw ShapeError(fmt::format("a face names vertex {}, but there are {}", index + 1,
-                                                 vertex_of.size()));
+                    throw ShapeError(
+                        fmt::format("a face names vertex {}, but there are {}", index + 1, vertex_of.size()));
                 triangle[corner] = vertex_of[static_cast<std::size_t>(index)];
             }
             if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])

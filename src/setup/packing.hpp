@@ -19,10 +19,10 @@ struct UnitCell {
 UnitCell lattice_cell(Lattice lattice, int dimension);
 
 /// Calls visit(point) for every point of the packing inside the shape, in an order that depends on nothing
-/// else. `spacing` is the D-th root of the volume per point [m]. In a box a lattice is fitted to a whole number
-/// of cells along each axis, so that it continues through periodic boundaries; the volume per point is then that
-/// of the box divided by the number of points. In other shapes the packing is anchored at the shape's centre
-/// and cut at its surface; which points are inside does not depend on where the shape is.
+/// else. `spacing` is the D-th root of the volume per point [m]. In a box a lattice is fitted to a whole
+/// number of cells along each axis, so that it continues through periodic boundaries; the volume per point is
+/// then that of the box divided by the number of points. In other shapes the packing is anchored at the
+/// shape's centre and cut at its surface; which points are inside does not depend on where the shape is.
 void for_each_point(const BodyShape& shape, const UnitCell& cell, double spacing, int dimension,
                     const std::function<void(const Point&)>& visit);
 

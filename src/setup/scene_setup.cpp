@@ -134,26 +134,24 @@ void refuse_outside(const Section& table, const Body& body, const Box& box) {
     }
 }
 
-/// Bodies that are wrong together or by what their particles come to.
-void refuse_bad_bodies(const std::vector<Section>& tables, const SceneSetup& setup) {
-    const int dimension = setup.simulation.box.dimension;
-    for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+void refuse_empty_bodies(const std::vector<Section>& tables, const SceneSetup& setup) {
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
         if (setup.census[b].count == 0)
             tables[b].error(
                 tables[b].has("particles") ? "particles" : "spacing",
                 fmt::format("body '{}' has no particles: none of its lattice, {:.4g} m apart, lies inside",
                             setup.bodies[b].name, setup.bodies[b].spacing));
+}
+
+void refuse_overlaps(const std::vector<Section>& tables, const SceneSetup& setup) {
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
         for (std::size_t other = 0; other < b; ++other)
-            if (overlap(setup.bodies[other], setup.bodies[b], dimension))
+            if (overlap(setup.bodies[other], setup.bodies[b], setup.simulation.box.dimension))
                 tables[b].error("", fmt::format("body '{}' overlaps body '{}'", setup.bodies[b].name,
                                                 setup.bodies[other].name));
-        refuse_outside(tables[b], setup.bodies[b], setup.simulation.box);
-    }
 }
 
 void arrange_impact(const ImpactPlan& plan, const Section& table, SceneSetup& setup) {
-    for (const std::size_t b : {plan.target, plan.impactor})
-        if (setup.census[b].count == 0) return;
     const PlannedImpact planned =
         plan_impact(plan, setup.bodies, setup.census, setup.simulation.box.dimension);
     if (!planned.impact) {
@@ -189,8 +187,11 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     }
     if (scene.faulty()) return;  // sizes and spacings may not fit each other
     setup.census = take_census(setup.bodies, box.dimension, setup.seed);
+    refuse_empty_bodies(tables, setup);
+    if (scene.faulty()) return;
     if (plan) arrange_impact(*plan, root.section("impact"), setup);
-    refuse_bad_bodies(tables, setup);
+    for (std::size_t b = 0; b < tables.size(); ++b) refuse_outside(tables[b], setup.bodies[b], box);
+    if (!scene.faulty()) refuse_overlaps(tables, setup);
 }
 
 /// Solids in contact bear neither tension nor shear across it, unless they are said to be bonded.

@@ -24,18 +24,19 @@ Point read_centre(const Section& table, const BodyContext& context) {
 
 /// At most one of two keys may say the same thing.
 void refuse_both(const Section& table, std::string_view key, std::string_view other) {
-    if (table.has(key) && table.has(other)) table.error(other, fmt::format("give {} or {}, not both", key, other));
+    if (table.has(key) && table.has(other))
+        table.error(other, fmt::format("give {} or {}, not both", key, other));
 }
 
 BodyShape read_sphere(const Section& table, double density, const BodyContext& context) {
     SphereShape sphere{read_centre(table, context), 0, table.number("inner_radius", "m", 0.0, not_negative)};
     refuse_both(table, "radius", "mass");
+    if (table.has("radius") || !table.has("mass")) sphere.radius = table.number("radius", "m", {}, positive);
     if (table.has("mass")) {
         const double full = table.number("mass", "kg", {}, positive) / density +
                             volume(SphereShape{{}, sphere.inner_radius}, context.dimension);
-        sphere.radius = std::pow(full / volume(SphereShape{{}, 1}, context.dimension), 1.0 / context.dimension);
-    } else {
-        sphere.radius = table.number("radius", "m", {}, positive);
+        sphere.radius =
+            std::pow(full / volume(SphereShape{{}, 1}, context.dimension), 1.0 / context.dimension);
     }
     if (sphere.inner_radius >= sphere.radius) table.error("inner_radius", "must be below the radius");
     return sphere;
@@ -53,7 +54,8 @@ Rotation read_orientation(const Section& table, int dimension) {
 }
 
 BodyShape read_ellipsoid(const Section& table, double density, const BodyContext& context) {
-    EllipsoidShape ellipsoid{read_centre(table, context), read_point(table, "semi_axes", "m", context.dimension),
+    EllipsoidShape ellipsoid{read_centre(table, context),
+                             read_point(table, "semi_axes", "m", context.dimension),
                              read_orientation(table, context.dimension)};
     for (std::size_t a = 0; a < static_cast<std::size_t>(context.dimension); ++a)
         if (!(ellipsoid.semi_axes[a] > 0)) {
@@ -62,21 +64,23 @@ BodyShape read_ellipsoid(const Section& table, double density, const BodyContext
         }
     if (table.has("mass")) {
         const double wanted = table.number("mass", "kg", {}, positive) / density;
-        ellipsoid.semi_axes = times(
-            std::pow(wanted / volume(ellipsoid, context.dimension), 1.0 / context.dimension), ellipsoid.semi_axes);
+        ellipsoid.semi_axes =
+            times(std::pow(wanted / volume(ellipsoid, context.dimension), 1.0 / context.dimension),
+                  ellipsoid.semi_axes);
     }
     return ellipsoid;
 }
 
-/// Path of a file that a scene names: from the scene's folder, else from the folder of the environment variable
-/// TALUS_DATA. Collective.
+/// Path of a file that a scene names: from the scene's folder, else from the folder of the environment
+/// variable TALUS_DATA. Collective.
 std::string find_file(const BodyContext& context, const std::string& name) {
     std::filesystem::path file = std::filesystem::absolute(context.scene.file()).parent_path() / name;
     if (context.comm.is_root()) {
         std::error_code unreadable;
         const char* data = std::getenv("TALUS_DATA");
         if (!std::filesystem::exists(file, unreadable) && data)
-            if (const auto other = std::filesystem::path(data) / name; std::filesystem::exists(other, unreadable))
+            if (const auto other = std::filesystem::path(data) / name;
+                std::filesystem::exists(other, unreadable))
                 file = other;
     }
     return context.comm.all_broadcast(file.string());
@@ -84,14 +88,18 @@ std::string find_file(const BodyContext& context, const std::string& name) {
 
 /// How many metres one unit of a shape file is, given its volume in that unit.
 double read_scale(const Section& table, double density, double file_volume) {
+    const bool by_mass = table.has("mass"), by_radius = table.has("mean_radius");
+    double scale = 1000;
+    if (table.has("file_unit") || (!by_mass && !by_radius))
+        scale = table.number("file_unit", "m", 1000.0, positive);
+    if (by_radius)
+        scale = table.number("mean_radius", "m", {}, positive) /
+                std::cbrt(file_volume / (4.0 / 3 * std::numbers::pi));
+    if (by_mass) scale = std::cbrt(table.number("mass", "kg", {}, positive) / density / file_volume);
     refuse_both(table, "file_unit", "mean_radius");
     refuse_both(table, "file_unit", "mass");
     refuse_both(table, "mean_radius", "mass");
-    if (table.has("mass")) return std::cbrt(table.number("mass", "kg", {}, positive) / density / file_volume);
-    if (table.has("mean_radius"))
-        return table.number("mean_radius", "m", {}, positive) /
-               std::cbrt(file_volume / (4.0 / 3 * std::numbers::pi));
-    return table.number("file_unit", "m", 1000.0, positive);
+    return scale;
 }
 
 BodyShape read_mesh(const Section& table, double density, const BodyContext& context) {

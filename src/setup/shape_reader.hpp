@@ -15,7 +15,7 @@ struct BodyContext {
     const Communicator& comm;
     const Scene& scene;
     int dimension;
-    BoxShape domain;  ///< what shape = "domain" fills: the whole box
+    BoxShape domain;                     ///< what shape = "domain" fills: the whole box
     std::array<Boundary, 3> boundaries;  ///< of the box
     const Body* first_body;  ///< of the scene, whose resolution others follow; null for the first itself
     bool in_impact;          ///< place and velocity come from [impact]
@@ -28,8 +28,8 @@ Point read_point(const Section& table, std::string_view key, std::string_view un
 /// The same, zero if it is not given.
 Point origin_default(const Section& table, std::string_view key, std::string_view unit, int dimension);
 
-/// The region that a body's table names. `density`: what a mass is made of [kg/m3]. Faults are recorded in the
-/// scene. Collective.
+/// The region that a body's table names. `density`: what a mass is made of [kg/m3]. Faults are recorded in
+/// the scene. Collective.
 BodyShape read_shape(const Section& table, double density, const BodyContext& context);
 
 }  // namespace talus

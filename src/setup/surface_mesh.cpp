@@ -10,8 +10,8 @@ namespace talus {
 
 namespace {
 
-/// +1 or -1 if the edge from a to b passes the point (y, z) upwards or downwards on the side of greater y, else
-/// 0. The crossing is computed from the lower end, so that both triangles of an edge find the same.
+/// +1 or -1 if the edge from a to b passes the point (y, z) upwards or downwards on the side of greater y,
+/// else 0. The crossing is computed from the lower end, so that both triangles of an edge find the same.
 int passes(const Point& a, const Point& b, double y, double z) {
     const bool up = a[2] <= z && z < b[2];
     if (!up && !(b[2] <= z && z < a[2])) return 0;
@@ -83,10 +83,10 @@ std::string why_not_closed(const Polyhedron& surface) {
         where = fmt::format("the first from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})", a[0], a[1], a[2], b[0],
                             b[1], b[2]);
     }
-    if (open > 0)
-        return fmt::format("is not closed: {} of {} edges are open, {}", open, edges.size(), where);
+    if (open > 0) return fmt::format("is not closed: {} of {} edges are open, {}", open, edges.size(), where);
     if (turned > 0)
-        return fmt::format("has faces of opposite orientation at {} of {} edges, {}", turned, edges.size(), where);
+        return fmt::format("has faces of opposite orientation at {} of {} edges, {}", turned, edges.size(),
+                           where);
     return {};
 }
 
@@ -98,7 +98,8 @@ SurfaceMesh::SurfaceMesh(Polyhedron surface) : surface_(std::move(surface)), int
             upper_[a] = std::max(upper_[a], vertex[a]);
         }
     // About two triangles of each side a bin.
-    const auto across = static_cast<std::size_t>(std::sqrt(static_cast<double>(surface_.triangles.size()) / 4));
+    const auto across =
+        static_cast<std::size_t>(std::sqrt(static_cast<double>(surface_.triangles.size()) / 4));
     for (std::size_t a = 1; a < 3; ++a) {
         bins_[a] = std::max<std::size_t>(across, 1);
         bins_per_metre_[a] = static_cast<double>(bins_[a]) / (upper_[a] - lower_[a]);

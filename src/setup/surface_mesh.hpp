@@ -17,17 +17,18 @@ struct Polyhedron {
 
 /// Volume integrals of the inside of a closed surface of unit density.
 struct VolumeIntegrals {
-    double volume;                         ///< [m3], negative if the triangles are seen from inside
-    Point centroid;                        ///< [m]
+    double volume;                        ///< [m3], negative if the triangles are seen from inside
+    Point centroid;                       ///< [m]
     std::array<Point, 3> second_moments;  ///< of x_a x_b about the centroid [m5]
 };
 VolumeIntegrals integrate(const Polyhedron& surface);
 
-/// Why a surface encloses no volume: how many edges have not as many triangles on one side as on the other, and
-/// where the first of them is. Empty if it is closed and its triangles are oriented alike.
+/// Why a surface encloses no volume: how many edges have not as many triangles on one side as on the other,
+/// and where the first of them is. Empty if it is closed and its triangles are oriented alike.
 std::string why_not_closed(const Polyhedron& surface);
 
-/// A closed surface that can be asked for its inside in a time that does not grow with its number of triangles.
+/// A closed surface that can be asked for its inside in a time that does not grow with its number of
+/// triangles.
 class SurfaceMesh {
   public:
     /// `surface` must be closed.
@@ -57,9 +58,9 @@ class SurfaceMesh {
     Polyhedron surface_;
     VolumeIntegrals integrals_;
     Point lower_{}, upper_{};
-    std::array<std::size_t, 3> bins_{};                 // along y and z
-    Point bins_per_metre_{};                            // along y and z
-    std::vector<std::uint32_t> bin_start_, in_bin_;     // triangles whose shadow along x touches a bin
+    std::array<std::size_t, 3> bins_{};              // along y and z
+    Point bins_per_metre_{};                         // along y and z
+    std::vector<std::uint32_t> bin_start_, in_bin_;  // triangles whose shadow along x touches a bin
 };
 
 }  // namespace talus
