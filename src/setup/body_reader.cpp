@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 #include "src/setup/glass.hpp"
@@ -32,6 +33,23 @@ VelocityField read_velocity_field(const Section& table, int dimension) {
                         table.number("phase", "rad", 0.0)};
 }
 
+/// A glass made by the root, which takes half a second, and handed to every rank.
+UnitCell shared_glass(const BodyContext& context) {
+    UnitCell glass{.edges = {}, .points = {}, .fits_boxes = false};
+    std::string bytes;
+    if (context.comm.is_root()) {
+        glass = glass_cell(context.dimension, context.seed);
+        glass.points.push_back(glass.edges);
+        bytes.assign(reinterpret_cast<const char*>(glass.points.data()), glass.points.size() * sizeof(Point));
+    }
+    bytes = context.comm.all_broadcast(bytes);
+    glass.points.resize(bytes.size() / sizeof(Point));
+    std::memcpy(glass.points.data(), bytes.data(), bytes.size());
+    glass.edges = glass.points.back();
+    glass.points.pop_back();
+    return glass;
+}
+
 UnitCell read_packing(const Section& table, const BodyContext& context) {
     const std::string name = table.choice("lattice", {"cubic", "close_packed", "glass"}, "close_packed");
     if (name == "cubic") return lattice_cell(Lattice::cubic, context.dimension);
@@ -46,7 +64,7 @@ UnitCell read_packing(const Section& table, const BodyContext& context) {
         return lattice_cell(Lattice::cubic, 1);
     }
     if (context.first_body && !context.first_body->cell.fits_boxes) return context.first_body->cell;
-    return glass_cell(context.dimension, context.seed);
+    return shared_glass(context);
 }
 
 /// Spacing from `spacing` or from the wanted number of particles; by default from the scene's first body,

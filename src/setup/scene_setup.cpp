@@ -139,7 +139,8 @@ void refuse_empty_bodies(const std::vector<Section>& tables, const SceneSetup& s
         if (setup.census[b].count == 0)
             tables[b].error(
                 tables[b].has("particles") ? "particles" : "spacing",
-                fmt::format("body '{}' has no particles: none of its lattice, {:.4g} m apart, lies inside",
+                fmt::format("body '{}' has no particles: none of its lattice, {:.4g} m apart, lies "
+                            "inside; make it finer or give the body a spacing of its own",
                             setup.bodies[b].name, setup.bodies[b].spacing));
 }
 

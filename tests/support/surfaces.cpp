@@ -54,7 +54,8 @@ Polyhedron icosphere(int cuts) {
 
 std::string obj_text(const Polyhedron& surface) {
     std::string text = "# a surface\n";
-    for (const Point& v : surface.vertices) text += fmt::format("v {:.17g} {:.17g} {:.17g}\n", v[0], v[1], v[2]);
+    for (const Point& v : surface.vertices)
+        text += fmt::format("v {:.17g} {:.17g} {:.17g}\n", v[0], v[1], v[2]);
     for (const auto& [a, b, c] : surface.triangles) text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
     return text;
 }

@@ -33,7 +33,8 @@ Evenness evenness(const UnitCell& cell, double h) {
         result.mean_density += density / static_cast<double>(cell.points.size());
     }
     for (const double density : densities)
-        result.deviation += std::pow(density / result.mean_density - 1, 2) / static_cast<double>(densities.size());
+        result.deviation +=
+            std::pow(density / result.mean_density - 1, 2) / static_cast<double>(densities.size());
     result.deviation = std::sqrt(result.deviation);
     return result;
 }
@@ -44,13 +45,14 @@ UnitCell gas_like(const UnitCell& glass) {
     UnitCell cell = glass;
     const RandomStream random{.seed = 5};
     for (std::size_t i = 0; i < cell.points.size(); ++i)
-        for (std::size_t a = 0; a < D; ++a) cell.points[i][a] = random.uniform(i, static_cast<std::uint32_t>(a));
+        for (std::size_t a = 0; a < D; ++a)
+            cell.points[i][a] = random.uniform(i, static_cast<std::uint32_t>(a));
     return cell;
 }
 
-// The density that another kernel than that of the relaxation gives, the cubic spline with h = 1.3 spacings (74
-// neighbours in 3D): its mean is 1 by normalisation, and lattices of a perfect crystal give no scatter. Points at
-// random scatter by a sixth or more. No lattice: neighbours' sums differ from point to point.
+// The density that another kernel than that of the relaxation gives, the cubic spline with h = 1.3 spacings
+// (74 neighbours in 3D): its mean is 1 by normalisation, and lattices of a perfect crystal give no scatter.
+// Points at random scatter by a sixth or more. No lattice: neighbours' sums differ from point to point.
 template <int D>
 void expect_quiet(double most) {
     const UnitCell glass = glass_cell(D, 1);
@@ -75,7 +77,8 @@ TEST(Glass, DependsOnTheSeedAlone) {
     EXPECT_NE(first.points, other.points);
 }
 
-// A glass of many cells fills a sphere with as many points as its volume holds, to the scatter at its surface.
+// A glass of many cells fills a sphere with as many points as its volume holds, to the scatter at its
+// surface.
 TEST(Glass, FillsAShape) {
     const UnitCell glass = glass_cell(3, 1);
     double count = 0;

@@ -40,8 +40,8 @@ RelativeState follow(RelativeState state, double mu, double end) {
     return state;
 }
 
-// Reference: the equations of motion, integrated with the Runge-Kutta method of fourth order with 1000 steps of the
-// time to cross the first distance and more.
+// Reference: the equations of motion, integrated with the Runge-Kutta method of fourth order with 1000 steps
+// of the time to cross the first distance and more.
 TEST(ImpactStart, LeadsToTheContactAskedFor) {
     const double mu = 2e8, touch = 1e4;  // escape speed 200 m/s
     for (const double gravity : {0.0, mu})
@@ -99,8 +99,7 @@ TEST(Impacts, AngleAndOffsetSayTheSame) {
                  by_offset = placed({.speed = 300, .offset = 40e3, .gap = 0});
     EXPECT_NEAR(by_angle.impact.impact_parameter, 40e3, 1e-9 * 40e3);
     EXPECT_NEAR(by_offset.impact.contact.angle, degrees(30), 1e-12);
-    const Point apart = minus(centre(by_offset.bodies[1].shape),
-                              centre(by_offset.bodies[0].shape));
+    const Point apart = minus(centre(by_offset.bodies[1].shape), centre(by_offset.bodies[0].shape));
     EXPECT_NEAR(apart[0], 80e3 * std::cos(degrees(30)), 1e-6);
     EXPECT_NEAR(apart[1], 40e3, 1e-6);
     for (const Placed& each : {by_angle, by_offset}) {
@@ -149,8 +148,8 @@ TEST(Impacts, ThatCannotBeAreRefused) {
     EXPECT_EQ(fault({.speed = 1, .along_orbit = true}), "gap");
 }
 
-// Angular momentum of a spinning body about its centre of mass: I omega with the inertia of its points. The momentum
-// vanishes though the points do not balance about the centre of the shape.
+// Angular momentum of a spinning body about its centre of mass: I omega with the inertia of its points. The
+// momentum vanishes though the points do not balance about the centre of the shape.
 TEST(Spin, GivesTheAngularMomentumOfTheLattice) {
     Body body = ball(1, 1000, 0.13);
     body.shape = EllipsoidShape{{3, 2, 1}, {1, 0.7, 0.5}, rotation_about(0, 0.5)};

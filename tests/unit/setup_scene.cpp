@@ -72,7 +72,8 @@ class SceneFiles : public testing::Test {
 };
 
 TEST_F(SceneFiles, ImpactorFollowsTheTargetWithEqualMasses) {
-    const SceneSetup setup = read(std::string(two_bodies) + "[impact]\nspeed = \"300 m/s\"\nangle = \"45 deg\"\n");
+    const SceneSetup setup =
+        read(std::string(two_bodies) + "[impact]\nspeed = \"300 m/s\"\nangle = \"45 deg\"\n");
     const double target = setup.census[0].mass / static_cast<double>(setup.census[0].count),
                  impactor = setup.census[1].mass / static_cast<double>(setup.census[1].count);
     EXPECT_NEAR(impactor / target, 1, 1e-12);
@@ -83,7 +84,8 @@ TEST_F(SceneFiles, ImpactorFollowsTheTargetWithEqualMasses) {
     EXPECT_NEAR(setup.impact->contact.distance, 50e3 + radius, 1e-6);
     EXPECT_NEAR(norm(setup.impact->start.position),
                 50e3 + radius + std::max(setup.bodies[0].spacing, setup.bodies[1].spacing), 1e-6);
-    const SceneSetup other = read(std::string(two_bodies) + "resolution = \"same_spacing\"\n[impact]\nspeed = 300\n");
+    const SceneSetup other =
+        read(std::string(two_bodies) + "resolution = \"same_spacing\"\n[impact]\nspeed = 300\n");
     EXPECT_EQ(other.bodies[1].spacing, other.bodies[0].spacing);
 }
 
@@ -96,7 +98,8 @@ TEST_F(SceneFiles, SpinsAndTheirWarning) {
     EXPECT_TRUE(warnings(slow).empty());
     ASSERT_EQ(warnings(fast).size(), 1u);  // 920 kg/m3 breaks up at 3.44 h
     EXPECT_NE(warnings(fast)[0].find("from 3.44"), std::string::npos) << warnings(fast)[0];
-    expect_fault(body + "spin = [0, 0, 1]\nspin_period = \"3 h\"\n", {"s.toml:7: body[0].spin_period", "not both"});
+    expect_fault(body + "spin = [0, 0, 1]\nspin_period = \"3 h\"\n",
+                 {"s.toml:7: body[0].spin_period", "not both"});
 }
 
 TEST_F(SceneFiles, BodiesOfAnImpactHaveNoPlaceOfTheirOwn) {
@@ -110,15 +113,17 @@ TEST_F(SceneFiles, BodiesOfAnImpactHaveNoPlaceOfTheirOwn) {
                  {"s.toml:15: impact.impactor", "\"target\", \"impactor\""});
     expect_fault(std::string(two_bodies) + "[impact]\nspeed = 300\noffset = \"100 km\"\n",
                  {"s.toml:15: impact.offset", "pass each other"});
-    expect_fault(std::string(two_bodies) + "[impact]\nspeed = 300\nangle = \"91 deg\"\n", {"impact.angle", "too large"});
+    expect_fault(std::string(two_bodies) + "[impact]\nspeed = 300\nangle = \"91 deg\"\n",
+                 {"impact.angle", "too large"});
 }
 
 TEST_F(SceneFiles, BodiesThatOverlapOrAreEmpty) {
     expect_fault(std::string(two_bodies) + "centre = [\"60 km\", 0, 0]\n",
                  {"body 'impactor' overlaps body 'target'", "s.toml:8"});
     EXPECT_EQ(fault_of(std::string(two_bodies) + "centre = [\"90 km\", 0, 0]\n"), "accepted");
-    expect_fault("[[body]]\nname = \"dust\"\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 10\n",
-                 {"s.toml:6: body[0].spacing", "body 'dust' has no particles"});
+    expect_fault(
+        "[[body]]\nname = \"dust\"\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 10\n",
+        {"s.toml:6: body[0].spacing", "body 'dust' has no particles"});
 }
 
 TEST_F(SceneFiles, FractureNeedsAMaterialThatCracks) {
@@ -129,14 +134,18 @@ TEST_F(SceneFiles, FractureNeedsAMaterialThatCracks) {
 TEST_F(SceneFiles, ShapeFiles) {
     const Polyhedron ball = icosphere(3);
     write("ball.obj", obj_text(ball));
-    const std::string body = "[[body]]\nmaterial = \"rock\"\nshape = \"mesh\"\nfile = \"ball.obj\"\nparticles = 2000\n";
+    const std::string body =
+        "[[body]]\nmaterial = \"rock\"\nshape = \"mesh\"\nfile = \"ball.obj\"\nparticles = 2000\n";
     const double unit_volume = integrate(ball).volume;
-    const auto volume_of = [&](const std::string& more) { return volume(read(body + more).bodies[0].shape, 3); };
+    const auto volume_of = [&](const std::string& more) {
+        return volume(read(body + more).bodies[0].shape, 3);
+    };
     EXPECT_NEAR(volume_of("") / (1e9 * unit_volume), 1, 1e-12) << "shape files are in km";
     EXPECT_NEAR(volume_of("file_unit = \"2 m\"\n") / (8 * unit_volume), 1, 1e-12);
     EXPECT_NEAR(volume_of("mean_radius = \"3 m\"\n") / (36 * std::numbers::pi), 1, 1e-12);
     EXPECT_NEAR(volume_of("mass = \"5.4 Mg\"\n"), 2, 1e-12);
-    const SceneSetup setup = read(body + "centre = [10, 20, 30]\norientation = [\"10 deg\", 0, \"20 deg\"]\n");
+    const SceneSetup setup =
+        read(body + "centre = [10, 20, 30]\norientation = [\"10 deg\", 0, \"20 deg\"]\n");
     EXPECT_NEAR(static_cast<double>(setup.census[0].count) / 2000, 1, 0.02);
     EXPECT_NEAR(centre(setup.bodies[0].shape)[2], 30, 1e-12);
     // What lies in the shape by its lattice is what a sphere would hold, but for the lattice's surface.
@@ -146,18 +155,21 @@ TEST_F(SceneFiles, ShapeFiles) {
     open.triangles.pop_back();
     write("open.obj", obj_text(open));
     const std::string of_open = "[[body]]\nmaterial = \"rock\"\nshape = \"mesh\"\nparticles = 100\nfile = ";
-    expect_fault(of_open + "\"open.obj\"\n", {"s.toml:5: body[0].file", "open.obj", "3 of 1920 edges are open"});
+    expect_fault(of_open + "\"open.obj\"\n",
+                 {"s.toml:5: body[0].file", "open.obj", "3 of 1920 edges are open"});
     expect_fault(of_open + "\"none.obj\"\n", {"s.toml:5: body[0].file", "none.obj"});
     expect_fault(body + "mass = 1\nmean_radius = 1\n", {"body[0].mass", "not both"});
 }
 
 TEST_F(SceneFiles, GlassNeedsAnOpenBox) {
-    const std::string body = "[[body]]\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n"
-                             "lattice = \"glass\"\n";
+    const std::string body =
+        "[[body]]\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n"
+        "lattice = \"glass\"\n";
     EXPECT_EQ(fault_of(body), "accepted");
     expect_fault("dimension = 1\n" + body, {"body[0].lattice", "one dimension"});
-    expect_fault(body + "[box]\nboundaries = [\"periodic\", \"open\", \"open\"]\nlower = [-2, -2, -2]\n"
-                        "upper = [2, 2, 2]\n",
+    expect_fault(body +
+                     "[box]\nboundaries = [\"periodic\", \"open\", \"open\"]\nlower = [-2, -2, -2]\n"
+                     "upper = [2, 2, 2]\n",
                  {"body[0].lattice", "closed boundaries"});
 }
 

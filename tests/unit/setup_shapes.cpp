@@ -21,15 +21,16 @@ Point random_point(std::uint64_t id, double half_width) {
     return point;
 }
 
-/// Winding number as the sum of the solid angles of all triangles: A. van Oosterom, J. Strackee, IEEE Trans. Biomed.
-/// Eng. 30 (1983) 125.
+/// Winding number as the sum of the solid angles of all triangles: A. van Oosterom, J. Strackee, IEEE Trans.
+/// Biomed. Eng. 30 (1983) 125.
 double solid_angle_winding(const Polyhedron& surface, const Point& x) {
     double sum = 0;
     for (const auto& [i, j, k] : surface.triangles) {
         const Point a = minus(surface.vertices[i], x), b = minus(surface.vertices[j], x),
                     c = minus(surface.vertices[k], x);
         const double la = norm(a), lb = norm(b), lc = norm(c);
-        sum += 2 * std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+        sum += 2 * std::atan2(dot(a, cross(b, c)),
+                              la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
     }
     return sum / (4 * pi);
 }
@@ -67,15 +68,15 @@ TEST(Rotations, TurnRightHandedOneAfterTheOther) {
     EXPECT_NEAR(turned[1], 1, 1e-15);
     const Rotation both = rotation_about(0, 0.3).then(rotation_about(1, 0.7));
     const Point x{1, 2, 3}, expected = rotation_about(1, 0.7)(rotation_about(0, 0.3)(x)), found = both(x),
-                back = both.inverse(found);
+                            back = both.inverse(found);
     for (std::size_t a = 0; a < 3; ++a) {
         EXPECT_NEAR(found[a], expected[a], 1e-14);
         EXPECT_NEAR(back[a], x[a], 1e-14);
     }
 }
 
-// Volume 4/3 pi abc, moments V s^2/5 along the axes. A lattice counts points inside to about the square root of the
-// number of points of its surface: 60 000 points, 5 000 of them there.
+// Volume 4/3 pi abc, moments V s^2/5 along the axes. A lattice counts points inside to about the square root
+// of the number of points of its surface: 60 000 points, 5 000 of them there.
 TEST(Ellipsoids, TurnedVolumeAndMoments) {
     const Rotation turn = rotation_about(0, 0.4).then(rotation_about(1, -0.9)).then(rotation_about(2, 1.3));
     const Point axes{3, 2, 1.5};
@@ -107,8 +108,10 @@ TEST(Packings, PointsInsideDoNotDependOnThePlace) {
     const SphereShape here{{}, 1}, there{{1e5 / 3, 7e4 / 9, 0.1}, 1};
     for (const double spacing : {0.1, 0.125, 0.25}) {
         std::size_t count_here = 0, count_there = 0;
-        for_each_point(here, lattice_cell(Lattice::cubic, 3), spacing, 3, [&](const Point&) { ++count_here; });
-        for_each_point(there, lattice_cell(Lattice::cubic, 3), spacing, 3, [&](const Point&) { ++count_there; });
+        for_each_point(here, lattice_cell(Lattice::cubic, 3), spacing, 3,
+                       [&](const Point&) { ++count_here; });
+        for_each_point(there, lattice_cell(Lattice::cubic, 3), spacing, 3,
+                       [&](const Point&) { ++count_there; });
         EXPECT_EQ(count_here, count_there);
     }
 }
@@ -117,8 +120,8 @@ TEST(Packings, PointsInsideDoNotDependOnThePlace) {
 TEST(Surfaces, IntegralsAreExact) {
     Polyhedron surface = icosphere(0);
     for (Point& vertex : surface.vertices) vertex = plus(vertex, {100, -50, 3});
-    const double edge = norm(minus(surface.vertices[surface.triangles[0][0]],
-                                   surface.vertices[surface.triangles[0][1]]));
+    const double edge =
+        norm(minus(surface.vertices[surface.triangles[0][0]], surface.vertices[surface.triangles[0][1]]));
     const VolumeIntegrals found = integrate(surface);
     const double exact = 5.0 / 12 * (3 + std::sqrt(5.0)) * edge * edge * edge;
     EXPECT_NEAR(found.volume / exact, 1, 1e-12);
@@ -133,7 +136,8 @@ TEST(Surfaces, IntegralsAreExact) {
 
 TEST(Surfaces, InsideIsWhereTheSolidAngleIsFull) {
     Polyhedron surface = icosphere(2);
-    for (Point& v : surface.vertices) v = times(1 + 0.3 * std::sin(5 * v[0]) * std::cos(4 * v[2]), v);  // lumps
+    for (Point& v : surface.vertices)
+        v = times(1 + 0.3 * std::sin(5 * v[0]) * std::cos(4 * v[2]), v);  // lumps
     const SurfaceMesh mesh(surface);
     int inside = 0;
     for (std::uint64_t id = 0; id < 3000; ++id) {
@@ -210,14 +214,14 @@ TEST(ObjFiles, VerticesOfEachFaceMayBeItsOwn) {
     std::string text;
     for (const Polyhedron::Triangle& triangle : ball.triangles)
         for (const std::uint32_t k : triangle)
-            text += "v " + std::to_string(ball.vertices[k][0]) + " " + std::to_string(ball.vertices[k][1]) + " " +
-                    std::to_string(ball.vertices[k][2]) + "\n";
+            text += "v " + std::to_string(ball.vertices[k][0]) + " " + std::to_string(ball.vertices[k][1]) +
+                    " " + std::to_string(ball.vertices[k][2]) + "\n";
     for (std::size_t t = 0; t < ball.triangles.size(); ++t) text += "f -1 -2 -3\n";
     EXPECT_NE(failure_of(text), "accepted") << "all faces are the last three vertices";
     std::string faces;
     for (std::size_t t = 0; t < ball.triangles.size(); ++t)
-        faces += "f " + std::to_string(3 * t + 1) + " " + std::to_string(3 * t + 2) + " " + std::to_string(3 * t + 3) +
-                 "\n";
+        faces += "f " + std::to_string(3 * t + 1) + " " + std::to_string(3 * t + 2) + " " +
+                 std::to_string(3 * t + 3) + "\n";
     const std::string vertices = text.substr(0, text.find('f'));
     EXPECT_EQ(parse_obj(vertices + faces).vertices.size(), ball.vertices.size());
 }
@@ -228,7 +232,8 @@ TEST(ObjFiles, WhatCannotBeUsedIsSaid) {
     EXPECT_EQ(failure_of(obj_text(open)).substr(0, 46), "is not closed: 3 of 120 edges are open, the fi");
     Polyhedron turned = icosphere(1);
     std::swap(turned.triangles[7][0], turned.triangles[7][1]);
-    EXPECT_EQ(failure_of(obj_text(turned)).substr(0, 54), "has faces of opposite orientation at 3 of 120 edges, t");
+    EXPECT_EQ(failure_of(obj_text(turned)).substr(0, 54),
+              "has faces of opposite orientation at 3 of 120 edges, t");
     EXPECT_EQ(failure_of("v 0 0 0\n"), "has no faces");
     EXPECT_EQ(failure_of(""), "has no faces");
     EXPECT_EQ(failure_of("# x\nv 0 0\nv 1 0 0\n"), "line 2: 'v 0 0' is not a vertex of three numbers");
