@@ -6,7 +6,8 @@
 namespace talus::test {
 namespace {
 
-// A glass in the surface of a shape file, spinning, and an impactor of equal particle masses; every rank makes its share.
+// A glass in the surface of a shape file, spinning, and an impactor of equal particle masses; every rank
+// makes its share.
 TEST(SceneSetup, MakesTheSameBitsOnAnyNumberOfRanks) {
     const std::string file = TALUS_SOURCE_DIR "/runs/bilobed_impact/scene.toml";
     const auto hash_on = [&](const Communicator& comm) {

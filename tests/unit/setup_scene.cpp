@@ -131,6 +131,17 @@ TEST_F(SceneFiles, FractureNeedsAMaterialThatCracks) {
                  {"s.toml:14: body[1].damage", "'ice'", "[fracture]"});
 }
 
+TEST_F(SceneFiles, StrengthAndFractureNeedASolid) {
+    const std::string body = "[[body]]\nmaterial = \"mud\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n";
+    const std::string mud =
+        "[materials.mud]\ndensity = 2000\nequation_of_state = { kind = \"linear\", sound_speed = 1e3 }\n";
+    EXPECT_EQ(fault_of(body + mud), "accepted");
+    expect_fault(body + mud + "fracture = { weibull_k = 1e30, weibull_m = 9 }\n",
+                 {"s.toml:9: materials.mud.fracture", "shear_modulus"});
+    expect_fault(body + mud + "strength = { kind = \"von_mises\", yield_stress = 1e6 }\n",
+                 {"s.toml:9: materials.mud.strength", "shear_modulus"});
+}
+
 TEST_F(SceneFiles, ShapeFiles) {
     const Polyhedron ball = icosphere(3);
     write("ball.obj", obj_text(ball));

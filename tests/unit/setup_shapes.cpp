@@ -104,6 +104,15 @@ TEST(Ellipsoids, TurnedVolumeAndMoments) {
     }
 }
 
+TEST(Ellipsoids, TurnedIn2D) {
+    const EllipsoidShape shape{{5, 0, 0}, {3, 1, 1}, rotation_about(2, pi / 2)};
+    EXPECT_DOUBLE_EQ(volume(shape, 2), 3 * pi);
+    EXPECT_TRUE(contains(shape, {5, 2.9, 0}, 2));
+    EXPECT_FALSE(contains(shape, {6.1, 0, 0}, 2));
+    EXPECT_NEAR(bounds(shape, 2).upper[1], 3, 1e-15);
+    EXPECT_NEAR(bounds(shape, 2).lower[0], 4, 1e-15);
+}
+
 TEST(Packings, PointsInsideDoNotDependOnThePlace) {
     const SphereShape here{{}, 1}, there{{1e5 / 3, 7e4 / 9, 0.1}, 1};
     for (const double spacing : {0.1, 0.125, 0.25}) {
