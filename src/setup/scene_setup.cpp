@@ -170,6 +170,7 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     if (tables.empty()) root.error("body", "a scene needs at least one [[body]]");
     if (tables.size() > 255) root.error("body", "more than 255 bodies");
     std::vector<std::string> names;
+    names.reserve(tables.size());
     for (const Section& table : tables) names.push_back(table.text("name", table.path()));
     const std::optional<ImpactPlan> plan = read_impact(root, names, box.dimension);
     setup.bodies.reserve(tables.size());
