@@ -117,6 +117,7 @@ BodyShape read_mesh(const Section& table, double density, const BodyContext& con
         Polyhedron surface = parse_obj(read_shared_text(context.comm, file));
         const VolumeIntegrals integrals = integrate(surface);
         const double scale = read_scale(table, density, integrals.volume);
+        if (!std::isfinite(scale)) return harmless;  // its material is missing
         for (Point& vertex : surface.vertices) vertex = turn(times(scale, minus(vertex, integrals.centroid)));
         return MeshShape{middle, std::make_shared<SurfaceMesh>(std::move(surface))};
     } catch (const ShapeError& error) {

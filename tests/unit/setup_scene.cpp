@@ -169,6 +169,9 @@ TEST_F(SceneFiles, ShapeFiles) {
     expect_fault(of_open + "\"open.obj\"\n",
                  {"s.toml:5: body[0].file", "open.obj", "3 of 1920 edges are open"});
     expect_fault(of_open + "\"none.obj\"\n", {"s.toml:5: body[0].file", "none.obj"});
+    expect_fault(
+        "[[body]]\nmaterial = \"none\"\nshape = \"mesh\"\nfile = \"ball.obj\"\nmass = 1\nparticles = 9\n",
+        {"s.toml:2: body[0].material"});
     expect_fault(body + "mass = 1\nmean_radius = 1\n", {"body[0].mass", "not both"});
 }
 
