@@ -40,7 +40,7 @@ void print_bodies(const SceneSetup& setup) {
             fmt::print("  turns in {:.4g} s, {:.4g} h", rotation_period(spin), rotation_period(spin) / 3600);
             if (dimension == 3)
                 fmt::print(", {:.4g} of the spin that breaks up a sphere",
-                           spin / break_up_spin(body.density));
+                           spin / break_up_spin(body.density, setup.gravitational_constant));
             fmt::print("\n");
         }
     }

@@ -22,9 +22,10 @@ void warn_of_imaginary_sound(const Material& material, std::vector<std::string>&
 }
 
 /// Without tensile strength only gravity holds a body together.
-void warn_of_spin(const Body& body, const Material& material, std::vector<std::string>& found) {
+void warn_of_spin(const Body& body, const Material& material, double gravitational_constant,
+                  std::vector<std::string>& found) {
     const bool holds_tension = material.shear_modulus > 0 && !(material.fracture && body.damage == 1);
-    const double spin = norm(body.spin), limit = break_up_spin(body.density);
+    const double spin = norm(body.spin), limit = break_up_spin(body.density, gravitational_constant);
     if (holds_tension || spin <= limit) return;
     found.push_back(
         fmt::format("body '{}' turns in {:.4g} h and has no tensile strength: at {:.4g} kg/m3 gravity holds "
@@ -40,7 +41,7 @@ std::vector<std::string> warnings(const SceneSetup& setup) {
     const Setup& simulation = setup.simulation;
     for (const Material& material : simulation.materials) warn_of_imaginary_sound(material, found);
     for (std::size_t b = 0; b < setup.bodies.size(); ++b)
-        warn_of_spin(setup.bodies[b], simulation.materials[b], found);
+        warn_of_spin(setup.bodies[b], simulation.materials[b], setup.gravitational_constant, found);
     const sph::Settings& sph = simulation.sph;
     if (simulation.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5)
         found.push_back(

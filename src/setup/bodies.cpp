@@ -178,7 +178,7 @@ bool overlap(const Body& a, const Body& b, int dimension) {
     return reaches_into(a, b.shape) || reaches_into(b, a.shape);
 }
 
-double break_up_spin(double density) {
+double break_up_spin(double density, double gravitational_constant) {
     return std::sqrt(4.0 / 3 * std::numbers::pi * gravitational_constant * density);
 }
 

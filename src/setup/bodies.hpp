@@ -12,8 +12,8 @@
 
 namespace talus {
 
-/// CODATA 2018 [m3 kg-1 s-2].
-inline constexpr double gravitational_constant = 6.67430e-11;
+/// Of gravitation, CODATA 2018 [m3 kg-1 s-2].
+inline constexpr double newton_constant = 6.67430e-11;
 
 /// Added to the uniform velocity of a body at the start.
 struct SineVelocity {
@@ -80,7 +80,7 @@ ParticleSet make_particles(const Communicator& comm, const std::vector<Body>& bo
 bool overlap(const Body& a, const Body& b, int dimension);
 
 /// Spin [rad/s] beyond which a sphere of that density loses its equator: omega^2 = 4/3 pi G rho.
-double break_up_spin(double density);
+double break_up_spin(double density, double gravitational_constant = newton_constant);
 /// [s] of a spin [rad/s].
 double rotation_period(double spin);
 

@@ -64,7 +64,7 @@ PlannedImpact plan_impact(const ImpactPlan& plan, const std::vector<Body>& bodie
         return {{}, plan.offset ? "offset" : "angle", "at this offset or angle the bodies pass each other"};
 
     Impact impact{.plan = plan, .contact = *contact};
-    const double mu = gravitational_constant * both;
+    const double mu = plan.gravitational_constant * both;
     impact.escape_speed = std::sqrt(2 * mu / contact->distance);
     impact.contact.speed = plan.speed_at_infinity ? std::hypot(plan.speed, impact.escape_speed) : plan.speed;
     const double speed2 = impact.contact.speed * impact.contact.speed;

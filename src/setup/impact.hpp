@@ -19,6 +19,7 @@ struct ImpactPlan {
     std::optional<double> distance{};      ///< of the centres at the start, instead of the gap [m]
     bool along_orbit = false;              ///< back from contact under mutual gravity, else straight
     bool centre_of_mass_frame = true;      ///< else that of the target
+    double gravitational_constant = newton_constant;  ///< [m3 kg-1 s-2]
 };
 
 /// Two bodies at the moment that they touch.

@@ -172,7 +172,8 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     std::vector<std::string> names;
     names.reserve(tables.size());
     for (const Section& table : tables) names.push_back(table.text("name", table.path()));
-    const std::optional<ImpactPlan> plan = read_impact(root, names, box.dimension);
+    std::optional<ImpactPlan> plan = read_impact(root, names, box.dimension);
+    if (plan) plan->gravitational_constant = setup.gravitational_constant;
     setup.bodies.reserve(tables.size());
     for (std::size_t b = 0; b < tables.size(); ++b) {
         setup.simulation.materials.push_back(find_material(comm, scene, tables[b]));
@@ -214,6 +215,8 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
     const int dimension = static_cast<int>(root.integer("dimension", 3, 1, 3));
     setup.simulation.box = read_box(root.section("box"), dimension);
+    if (const Section gravity = root.section("gravity"); gravity.exists())
+        setup.gravitational_constant = gravity.number("constant", "m3 kg-1 s-2", newton_constant, positive);
     read_bodies(comm, scene, setup);
     setup.simulation.sph = read_sph(root.section("sph"), dimension, setup.simulation.materials);
     read_contacts(root, setup);
