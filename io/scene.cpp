@@ -153,6 +153,8 @@ Section Scene::root() const { return Section(state_.get(), &state_->root, ""); }
 const std::string& Scene::text() const { return state_->text; }
 const std::filesystem::path& Scene::file() const { return state_->file; }
 
+bool Scene::faulty() const { return !state_->faults.empty(); }
+
 void Scene::finish() const {
     SceneState checked = *state_;
     find_unread(checked, checked.root, "");

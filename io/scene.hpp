@@ -103,6 +103,8 @@ class Scene {
     ~Scene();
 
     Section root() const;
+    /// Whether a fault was found so far: values may then be harmless ones that do not fit each other.
+    bool faulty() const;
     /// Throws SceneError listing all faults in order of line, among them every key that nobody read.
     void finish() const;
     /// The file's text, verbatim.

@@ -70,7 +70,8 @@ void Section::missing(std::string_view key, std::string_view wanted) const {
 }
 
 void Section::error(std::string_view key, std::string_view message) const {
-    if (const SceneNode* found = key.empty() ? nullptr : find(key)) {
+    if (SceneNode* found = key.empty() ? nullptr : find(key)) {
+        found->read = true;  // one fault is enough
         fault(key, *found, message);
         return;
     }

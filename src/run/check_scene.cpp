@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
+#include <numbers>
+#include <string_view>
 
 #include "src/run/commands.hpp"
 #include "src/run/warnings.hpp"
@@ -18,6 +21,45 @@ void print_fields(const ParticleSet& particles) {
                    column.info->role == Role::state ? "state" : "work",
                    column.info->reach == Reach::halo ? "copied" : "", column.info->description);
     }
+}
+
+void print_bodies(const SceneSetup& setup) {
+    const int dimension = setup.simulation.box.dimension;
+    constexpr std::array<std::string_view, 3> volume_unit{"m", "m2", "m3"}, mass_unit{"kg/m2", "kg/m", "kg"};
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+        const Body& body = setup.bodies[b];
+        const BodyCensus& census = setup.census[b];
+        const auto last_axis = static_cast<std::size_t>(dimension - 1);
+        fmt::print(
+            "body {}: {} particles of {}, spacing {:.4g} m, volume {:.6g} {}, mass {:.6g} {} ({:.4g} "
+            "each)\n",
+            body.name, census.count, setup.simulation.materials[b].name, body.spacing,
+            volume(body.shape, dimension), volume_unit[last_axis], census.mass, mass_unit[last_axis],
+            census.mass / static_cast<double>(census.count));
+        if (const double spin = norm(body.spin); spin > 0) {
+            fmt::print("  turns in {:.4g} s, {:.4g} h", rotation_period(spin), rotation_period(spin) / 3600);
+            if (dimension == 3)
+                fmt::print(", {:.4g} of the spin that breaks up a sphere",
+                           spin / break_up_spin(body.density, setup.gravitational_constant));
+            fmt::print("\n");
+        }
+    }
+}
+
+void print_impact(const Impact& impact, const SceneSetup& setup) {
+    fmt::print(
+        "impact: {} hits {} at {:.6g} m/s and {:.4g} deg from head-on, centres {:.6g} m apart, impact "
+        "parameter "
+        "{:.6g} m\n",
+        setup.bodies[impact.plan.impactor].name, setup.bodies[impact.plan.target].name, impact.contact.speed,
+        impact.contact.angle * 180 / std::numbers::pi, impact.contact.distance, impact.impact_parameter);
+    fmt::print("  starts {:.6g} m apart at {:.6g} m/s\n", norm(impact.start.position),
+               norm(impact.start.velocity));
+    fmt::print("  specific energy {:.6g} J/kg of all, {:.6g} J/kg of the target\n", impact.specific_energy,
+               impact.energy_per_target);
+    if (setup.simulation.box.dimension < 3) return;
+    fmt::print("  mutual escape speed {:.6g} m/s: impact at {:.4g} of it, {:.6g} m/s at infinity\n",
+               impact.escape_speed, impact.contact.speed / impact.escape_speed, impact.speed_at_infinity);
 }
 
 /// Looks through the equation of state's plane where it can be unphysical.
@@ -54,13 +96,11 @@ int check_scene(const Communicator& comm, const RunOptions& options) {
     if (!comm.is_root()) return exit_done;
 
     fmt::print("{}\n\n{}\n", setup.title, scene.resolved());
-    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
-        fmt::print("body {}: {} particles of {}, spacing {:.4g} m\n", setup.bodies[b].name,
-                   count_particles(setup.bodies[b], setup.simulation.box.dimension),
-                   setup.simulation.materials[b].name, setup.bodies[b].spacing);
+    print_bodies(setup);
+    if (setup.impact) print_impact(*setup.impact, setup);
     fmt::print("equations of state:\n");
     for (const Material& material : setup.simulation.materials) print_scan(material);
-    for (const std::string& warning : warnings(setup.simulation)) fmt::print("note: {}\n", warning);
+    for (const std::string& warning : warnings(setup)) fmt::print("note: {}\n", warning);
     print_fields(simulation.particles());
     const double bytes = static_cast<double>(simulation.particles().bytes_per_particle());
     const double steps = setup.output.end_time / first_step;

@@ -132,7 +132,7 @@ void Recorder::begin(Simulation& simulation, double end_time) {
             simulation.time_step(), folder_.string());
     }
     if (comm_.is_root())
-        for (const std::string& warning : warnings(setup_.simulation)) files_->log->warn("note: {}", warning);
+        for (const std::string& warning : warnings(setup_)) files_->log->warn("note: {}", warning);
     files_->diagnostics = std::make_unique<CsvWriter>(
         comm_, folder_ / "diagnostics.csv", diagnostics_columns,
         is_new ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));

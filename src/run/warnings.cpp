@@ -21,13 +21,29 @@ void warn_of_imaginary_sound(const Material& material, std::vector<std::string>&
         result.densest_imaginary / tillotson->reference_density, result.at_density, result.at_energy));
 }
 
+/// Without tensile strength only gravity holds a body together.
+void warn_of_spin(const Body& body, const Material& material, double gravitational_constant,
+                  std::vector<std::string>& found) {
+    const bool holds_tension = material.shear_modulus > 0 && !(material.fracture && body.damage == 1);
+    const double spin = norm(body.spin), limit = break_up_spin(body.density, gravitational_constant);
+    if (holds_tension || spin <= limit) return;
+    found.push_back(
+        fmt::format("body '{}' turns in {:.4g} h and has no tensile strength: at {:.4g} kg/m3 gravity holds "
+                    "even a sphere only "
+                    "from {:.4g} h on",
+                    body.name, rotation_period(spin) / 3600, body.density, rotation_period(limit) / 3600));
+}
+
 }  // namespace
 
-std::vector<std::string> warnings(const Setup& setup) {
+std::vector<std::string> warnings(const SceneSetup& setup) {
     std::vector<std::string> found;
-    for (const Material& material : setup.materials) warn_of_imaginary_sound(material, found);
-    const sph::Settings& sph = setup.sph;
-    if (setup.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5) {
+    const Setup& simulation = setup.simulation;
+    for (const Material& material : simulation.materials) warn_of_imaginary_sound(material, found);
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+        warn_of_spin(setup.bodies[b], simulation.materials[b], setup.gravitational_constant, found);
+    const sph::Settings& sph = simulation.sph;
+    if (simulation.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5) {
         const auto [eta, cutoff] = sph::gaussian_defaults(3, false);
         found.push_back(fmt::format(
             "sph.cutoff = {}: compressed matter in 3D forms pairs where a pressure of a tenth of "

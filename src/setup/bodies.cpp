@@ -1,6 +1,7 @@
 #include "src/setup/bodies.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "domain/random.hpp"
 
@@ -50,22 +51,32 @@ struct VelocityAt {
     }
 };
 
-Point velocity_at(const Body& body, const Point& x, int dimension) {
-    Point v = std::visit(VelocityAt{x, dimension}, body.velocity_field);
-    const Point middle = centre(body.shape);
-    const Point arm{x[0] - middle[0], x[1] - middle[1], x[2] - middle[2]};
-    const Point& w = body.spin;
-    v[0] += body.velocity[0] + w[1] * arm[2] - w[2] * arm[1];
-    v[1] += body.velocity[1] + w[2] * arm[0] - w[0] * arm[2];
-    v[2] += body.velocity[2] + w[0] * arm[1] - w[1] * arm[0];
-    return v;
+Point velocity_at(const Body& body, const Point& x, const Point& centre_of_mass, int dimension) {
+    const Point field = std::visit(VelocityAt{x, dimension}, body.velocity_field);
+    return plus(field, plus(body.velocity, cross(body.spin, minus(x, centre_of_mass))));
 }
 
 /// Volume that each particle of a body stands for.
 double particle_volume(const Body& body, std::uint64_t count, int dimension) {
-    if (std::holds_alternative<BoxShape>(body.shape))
+    if (body.cell.fits_boxes && std::holds_alternative<BoxShape>(body.shape))
         return volume(body.shape, dimension) / static_cast<double>(count);
     return std::pow(body.spacing, dimension);
+}
+
+/// Calls visit(id, position) for every particle of a body.
+template <class Visit>
+void for_each_particle(const Body& body, std::uint64_t first_id, int dimension, std::uint64_t seed,
+                       Visit&& visit) {
+    const RandomStream displacement{seed, RandomPurpose::positions, 0};
+    std::uint64_t id = first_id;
+    for_each_point(body.shape, body.cell, body.spacing, dimension, [&](const Point& point) {
+        Point x = point;
+        for (int a = 0; a < dimension && body.jitter > 0; ++a)
+            x[static_cast<std::size_t>(a)] +=
+                body.jitter * body.spacing *
+                (2 * displacement.uniform(id, static_cast<std::uint32_t>(a)) - 1);
+        visit(id++, x);
+    });
 }
 
 void draw_flaws(ParticleSet& particles, const Fracture& fracture, double body_volume, std::uint64_t count,
@@ -80,30 +91,51 @@ void draw_flaws(ParticleSet& particles, const Fracture& fracture, double body_vo
     }
 }
 
-void add_particle(ParticleSet& particles, std::size_t i, std::uint64_t id, const Body& body,
-                  std::uint8_t index, const Point& x, double particle_size, const sph::Settings& settings) {
+struct NewParticle {
+    std::uint64_t id;
+    std::uint8_t body;
+    Point x;
+};
+
+void put_particle(ParticleSet& particles, std::size_t i, const NewParticle& made, const Body& body,
+                  const BodyCensus& census, double eta) {
     const int dimension = particles.dimension();
-    const Point v = velocity_at(body, x, dimension);
-    particles.data(field::id)[i] = id;
+    const Point v = velocity_at(body, made.x, census.centre_of_mass, dimension);
+    particles.data(field::id)[i] = made.id;
     for (int a = 0; a < dimension; ++a) {
-        particles.data(field::position, a)[i] = x[static_cast<std::size_t>(a)];
+        particles.data(field::position, a)[i] = made.x[static_cast<std::size_t>(a)];
         particles.data(field::velocity, a)[i] = v[static_cast<std::size_t>(a)];
     }
-    particles.data(field::mass)[i] = body.density * particle_size;
+    particles.data(field::mass)[i] = body.density * census.particle_volume;
     particles.data(field::internal_energy)[i] = body.internal_energy;
-    particles.data(field::smoothing_length)[i] = settings.eta * std::pow(particle_size, 1.0 / dimension);
-    particles.data(field::body)[i] = index;
+    particles.data(field::smoothing_length)[i] = eta * std::pow(census.particle_volume, 1.0 / dimension);
+    particles.data(field::body)[i] = made.body;
     if (particles.has(field::density)) particles.data(field::density)[i] = body.density;
     if (particles.has(field::damage)) particles.data(field::damage)[i] = body.damage;
 }
 
 }  // namespace
 
-std::uint64_t count_particles(const Body& body, int dimension) {
-    std::uint64_t count = 0;
-    for_each_lattice_point(body.shape, body.lattice, body.spacing, dimension,
-                           [&count](const Point&) { ++count; });
-    return count;
+std::vector<BodyCensus> take_census(const std::vector<Body>& bodies, int dimension, std::uint64_t seed) {
+    std::vector<BodyCensus> result;
+    std::uint64_t next_id = 0;
+    for (const Body& body : bodies) {
+        BodyCensus census{.first_id = next_id};
+        const Point middle = centre(body.shape);
+        Point arms{};
+        for_each_particle(body, next_id, dimension, seed, [&](std::uint64_t, const Point& x) {
+            arms = plus(arms, minus(x, middle));
+            ++census.count;
+        });
+        if (census.count > 0) {
+            census.particle_volume = particle_volume(body, census.count, dimension);
+            census.mass = body.density * census.particle_volume * static_cast<double>(census.count);
+            census.centre_of_mass = plus(middle, times(1 / static_cast<double>(census.count), arms));
+        }
+        next_id += census.count;
+        result.push_back(census);
+    }
+    return result;
 }
 
 ParticleSet make_particles(const Communicator& comm, const std::vector<Body>& bodies,
@@ -111,37 +143,45 @@ ParticleSet make_particles(const Communicator& comm, const std::vector<Body>& bo
                            const sph::Settings& settings, std::uint64_t seed) {
     ParticleSet particles = prototype;
     const int dimension = particles.dimension();
+    const std::vector<BodyCensus> census = take_census(bodies, dimension, seed);
     const auto ranks = static_cast<std::uint64_t>(comm.size()),
                rank = static_cast<std::uint64_t>(comm.rank());
-    const RandomStream displacement{seed, RandomPurpose::positions, 0};
-    std::uint64_t first_id = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-        const Body& body = bodies[b];
-        const std::uint64_t count = count_particles(body, dimension);
-        const double size = particle_volume(body, count, dimension);
-        const std::uint64_t share_begin = count * rank / ranks, share_end = count * (rank + 1) / ranks;
+        const std::uint64_t first_id = census[b].first_id, count = census[b].count;
+        const std::uint64_t share_begin = first_id + count * rank / ranks,
+                            share_end = first_id + count * (rank + 1) / ranks;
+        const auto index = static_cast<std::uint8_t>(b);
         std::size_t next = particles.size();
         particles.resize(next + share_end - share_begin);
-        std::uint64_t k = 0;
-        for_each_lattice_point(
-            body.shape, body.lattice, body.spacing, dimension, [&](const Point& lattice_point) {
-                if (k >= share_begin && k < share_end) {
-                    Point x = lattice_point;
-                    for (int a = 0; a < dimension && body.jitter > 0; ++a)
-                        x[static_cast<std::size_t>(a)] +=
-                            body.jitter * body.spacing *
-                            (2 * displacement.uniform(first_id + k, static_cast<std::uint32_t>(a)) - 1);
-                    add_particle(particles, next++, first_id + k, body, static_cast<std::uint8_t>(b), x, size,
-                                 settings);
-                }
-                ++k;
-            });
+        for_each_particle(bodies[b], first_id, dimension, seed, [&](std::uint64_t id, const Point& x) {
+            if (share_begin <= id && id < share_end)
+                put_particle(particles, next++, {id, index, x}, bodies[b], census[b], settings.eta);
+        });
         if (materials[b].fracture)
-            draw_flaws(particles, *materials[b].fracture, size * static_cast<double>(count), count, seed,
-                       static_cast<std::uint8_t>(b));
-        first_id += count;
+            draw_flaws(particles, *materials[b].fracture,
+                       census[b].particle_volume * static_cast<double>(count), count, seed, index);
     }
     return particles;
 }
+
+bool overlap(const Body& a, const Body& b, int dimension) {
+    const BoxShape around_a = bounds(a.shape, dimension), around_b = bounds(b.shape, dimension);
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimension); ++axis)
+        if (around_a.upper[axis] <= around_b.lower[axis] || around_b.upper[axis] <= around_a.lower[axis])
+            return false;
+    const auto reaches_into = [dimension](const Body& body, const BodyShape& other) {
+        bool found = false;
+        for_each_point(body.shape, body.cell, body.spacing, dimension,
+                       [&](const Point& point) { found = found || contains(other, point, dimension); });
+        return found;
+    };
+    return reaches_into(a, b.shape) || reaches_into(b, a.shape);
+}
+
+double break_up_spin(double density, double gravitational_constant) {
+    return std::sqrt(4.0 / 3 * std::numbers::pi * gravitational_constant * density);
+}
+
+double rotation_period(double spin) { return 2 * std::numbers::pi / spin; }
 
 }  // namespace talus

@@ -8,9 +8,12 @@
 #include "domain/particles.hpp"
 #include "physics/solid/material.hpp"
 #include "physics/sph/settings.hpp"
-#include "src/setup/shapes.hpp"
+#include "src/setup/packing.hpp"
 
 namespace talus {
+
+/// Of gravitation, CODATA 2018 [m3 kg-1 s-2].
+inline constexpr double newton_constant = 6.67430e-11;
 
 /// Added to the uniform velocity of a body at the start.
 struct SineVelocity {
@@ -43,25 +46,42 @@ using VelocityField =
 struct Body {
     std::string name;
     BodyShape shape;
-    Lattice lattice = Lattice::cubic;
+    UnitCell cell;       ///< packing of the particles
     double spacing = 0;  ///< D-th root of the volume per particle [m]
     double jitter = 0;   ///< random displacement, largest, in spacings [1]
-    Point velocity{};    ///< [m/s]
-    Point spin{};        ///< angular velocity around the shape's centre [rad/s]; in 2D its z component
+    Point velocity{};    ///< of the centre of mass [m/s]
+    Point spin{};        ///< angular velocity about the centre of mass [rad/s]; in 2D its z component
     VelocityField velocity_field;
     double density = 0;          ///< [kg/m3]
     double internal_energy = 0;  ///< [J/kg]
     double damage = 0;           ///< [1]
 };
 
-/// Makes the particles of all bodies, each rank its share, with the state at time 0. Ids are given in order
-/// of bodies and lattice points, so that they, and the flaws drawn by them, depend on the scene alone.
-/// Collective.
+/// What the particles of a body add up to.
+struct BodyCensus {
+    std::uint64_t first_id = 0;
+    std::uint64_t count = 0;     ///< particles
+    double particle_volume = 0;  ///< [m3]
+    double mass = 0;             ///< [kg]
+    Point centre_of_mass{};      ///< [m]
+};
+
+/// Counts the particles that bodies become, and where they balance. Ids are given in order of bodies and
+/// points of their packing, so that they, and what is drawn at random by them, depend on the scene alone.
+/// Equal on every rank.
+std::vector<BodyCensus> take_census(const std::vector<Body>& bodies, int dimension, std::uint64_t seed);
+
+/// Makes the particles of all bodies, each rank its share, with the state at time 0. Collective.
 ParticleSet make_particles(const Communicator& comm, const std::vector<Body>& bodies,
                            const std::vector<Material>& materials, const ParticleSet& prototype,
                            const sph::Settings& settings, std::uint64_t seed);
 
-/// Number of particles that a body becomes.
-std::uint64_t count_particles(const Body& body, int dimension);
+/// Whether a particle of one of the bodies lies inside the other.
+bool overlap(const Body& a, const Body& b, int dimension);
+
+/// Spin [rad/s] beyond which a sphere of that density loses its equator: omega^2 = 4/3 pi G rho.
+double break_up_spin(double density, double gravitational_constant = newton_constant);
+/// [s] of a spin [rad/s].
+double rotation_period(double spin);
 
 }  // namespace talus

@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "src/setup/glass.hpp"
+#include "src/setup/shape_reader.hpp"
 
 namespace talus {
 
@@ -10,49 +15,6 @@ namespace {
 
 constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
 constexpr Range not_negative{0};
-
-Point read_point(const Section& table, std::string_view key, std::string_view unit, int dimension,
-                 std::optional<std::vector<double>> default_value = {}) {
-    const auto count = static_cast<std::size_t>(dimension);
-    if (default_value) default_value->resize(count);
-    const std::vector<double> values = table.numbers(key, unit, count, default_value);
-    Point point{};
-    std::copy_n(values.begin(), std::min(values.size(), count), point.begin());
-    return point;
-}
-
-Point origin_default(const Section& table, std::string_view key, std::string_view unit, int dimension) {
-    return read_point(table, key, unit, dimension, std::vector<double>(3, 0.0));
-}
-
-BodyShape read_shape(const Section& table, int dimension, const BoxShape& domain) {
-    const std::string kind = table.choice("shape", {"box", "sphere", "ellipsoid", "domain"});
-    if (kind == "sphere") {
-        SphereShape sphere{origin_default(table, "centre", "m", dimension),
-                           table.number("radius", "m", {}, positive),
-                           table.number("inner_radius", "m", 0.0, not_negative)};
-        if (sphere.inner_radius >= sphere.radius) table.error("inner_radius", "must be below the radius");
-        return sphere;
-    }
-    if (kind == "ellipsoid") {
-        EllipsoidShape ellipsoid{origin_default(table, "centre", "m", dimension),
-                                 read_point(table, "semi_axes", "m", dimension)};
-        for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
-            if (!(ellipsoid.semi_axes[a] > 0)) {
-                table.error("semi_axes", "must be positive");
-                ellipsoid.semi_axes[a] = 1;
-            }
-        return ellipsoid;
-    }
-    if (kind == "domain") return domain;
-    BoxShape box{read_point(table, "lower", "m", dimension), read_point(table, "upper", "m", dimension)};
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
-        if (!(box.lower[a] < box.upper[a])) {
-            table.error("upper", fmt::format("must be above lower along {}", "xyz"[a]));
-            box.upper[a] = box.lower[a] + 1;
-        }
-    return box;
-}
 
 VelocityField read_velocity_field(const Section& table, int dimension) {
     if (!table.exists()) return {};
@@ -71,17 +33,72 @@ VelocityField read_velocity_field(const Section& table, int dimension) {
                         table.number("phase", "rad", 0.0)};
 }
 
-/// Spacing from `spacing` or from the wanted number of particles; by default that of the scene's first body,
-/// if any.
-double read_spacing(const Section& table, const BodyShape& shape, int dimension, double first_spacing) {
+/// A glass made by the root, which takes half a second, and handed to every rank.
+UnitCell shared_glass(const BodyContext& context) {
+    UnitCell glass{.edges = {}, .points = {}, .fits_boxes = false};
+    std::string bytes;
+    if (context.comm.is_root()) {
+        glass = glass_cell(context.dimension, context.seed);
+        glass.points.push_back(glass.edges);
+        bytes.assign(reinterpret_cast<const char*>(glass.points.data()), glass.points.size() * sizeof(Point));
+    }
+    bytes = context.comm.all_broadcast(bytes);
+    glass.points.resize(bytes.size() / sizeof(Point));
+    std::memcpy(glass.points.data(), bytes.data(), bytes.size());
+    glass.edges = glass.points.back();
+    glass.points.pop_back();
+    return glass;
+}
+
+UnitCell read_packing(const Section& table, const BodyContext& context) {
+    const std::string name = table.choice("lattice", {"cubic", "close_packed", "glass"}, "close_packed");
+    if (name == "cubic") return lattice_cell(Lattice::cubic, context.dimension);
+    if (name == "close_packed") return lattice_cell(Lattice::close_packed, context.dimension);
+    for (const Boundary boundary : context.boundaries)
+        if (boundary != Boundary::open) {
+            table.error("lattice", "a glass does not continue through closed boundaries");
+            return lattice_cell(Lattice::cubic, context.dimension);
+        }
+    if (context.dimension == 1) {
+        table.error("lattice", "there is no glass in one dimension");
+        return lattice_cell(Lattice::cubic, 1);
+    }
+    if (context.first_body && !context.first_body->cell.fits_boxes) return context.first_body->cell;
+    return shared_glass(context);
+}
+
+/// Spacing from `spacing` or from the wanted number of particles; by default from the scene's first body,
+/// with its spacing or with its mass per particle.
+double read_spacing(const Section& table, const Body& body, const BodyContext& context) {
     if (table.has("spacing") && table.has("particles"))
         table.error("particles", "give spacing or particles, not both");
     if (table.has("particles")) {
         const auto count = static_cast<double>(table.integer("particles", {}, 1, std::int64_t{1} << 40));
-        return std::pow(volume(shape, dimension) / count, 1.0 / dimension);
+        return std::pow(volume(body.shape, context.dimension) / count, 1.0 / context.dimension);
     }
-    if (first_spacing > 0) return table.number("spacing", "m", first_spacing, positive);
-    return table.number("spacing", "m", {}, positive);
+    if (table.has("spacing") || !context.first_body) return table.number("spacing", "m", {}, positive);
+    const Body& first = *context.first_body;
+    const bool same_mass = table.choice("resolution", {"same_spacing", "same_mass"},
+                                        context.in_impact ? "same_mass" : "same_spacing") == "same_mass";
+    if (!same_mass) return first.spacing;
+    return first.spacing * std::pow(first.density / body.density, 1.0 / context.dimension);
+}
+
+/// Angular velocity from `spin`, or from a period and an axis.
+Point read_spin(const Section& table, int dimension) {
+    Point spin{};
+    if (table.has("spin"))
+        spin = dimension == 3 ? read_point(table, "spin", "rad/s", 3)
+                              : Point{0, 0, table.number("spin", "rad/s")};
+    if (!table.has("spin_period")) return spin;
+    if (table.has("spin")) table.error("spin_period", "give spin or spin_period, not both");
+    const Point axis = dimension == 3 ? read_point(table, "spin_axis", "1", 3, {{0, 0, 1}}) : Point{0, 0, 1};
+    const double length = norm(axis), period = table.number("spin_period", "s", {}, positive);
+    if (length == 0) {
+        table.error("spin_axis", "has no direction");
+        return spin;
+    }
+    return times(2 * std::numbers::pi / period / length, axis);
 }
 
 /// Specific internal energy: given, or from a given pressure of a gas.
@@ -101,27 +118,29 @@ double read_energy(const Section& table, const Material& material, double densit
 
 }  // namespace
 
-Body read_body(const Section& table, const Material& material, int dimension, const BoxShape& domain,
-               double first_spacing) {
+Body read_body(const Section& table, const Material& material, const BodyContext& context) {
+    const int dimension = context.dimension;
     Body body;
     body.name = table.text("name", table.path());
-    body.shape = read_shape(table, dimension, domain);
-    body.lattice = table.choice("lattice", {"cubic", "close_packed"}, "close_packed") == "cubic"
-                       ? Lattice::cubic
-                       : Lattice::close_packed;
-    body.spacing = read_spacing(table, body.shape, dimension, first_spacing);
-    body.jitter = table.number("jitter", "1", 0.0, {0, 0.5});
-    body.velocity = origin_default(table, "velocity", "m/s", dimension);
-    if (table.has("spin")) {
-        if (dimension == 3)
-            body.spin = read_point(table, "spin", "rad/s", 3);
-        else
-            body.spin = {0, 0, table.number("spin", "rad/s")};
-    }
-    body.velocity_field = read_velocity_field(table.section("velocity_field"), dimension);
     body.density = table.number("density", "kg/m3", material.reference_density, positive);
+    body.shape = read_shape(table, body.density, context);
+    body.cell = read_packing(table, context);
+    body.spacing = read_spacing(table, body, context);
+    body.jitter = table.number("jitter", "1", 0.0, {0, 0.5});
+    if (context.in_impact) {
+        for (const std::string_view key : {"velocity", "centre"})
+            if (table.has(key)) table.error(key, "is set by [impact], which names this body");
+    } else {
+        body.velocity = origin_default(table, "velocity", "m/s", dimension);
+    }
+    body.spin = read_spin(table, dimension);
+    body.velocity_field = read_velocity_field(table.section("velocity_field"), dimension);
     body.internal_energy = read_energy(table, material, body.density);
-    if (material.fracture) body.damage = table.number("damage", "1", 0.0, {0, 1});
+    if (material.fracture)
+        body.damage = table.number("damage", "1", 0.0, {0, 1});
+    else if (table.has("damage"))
+        table.error("damage",
+                    fmt::format("material '{}' cannot crack: it has no [fracture] table", material.name));
     return body;
 }
 

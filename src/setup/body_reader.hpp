@@ -1,14 +1,10 @@
 #pragma once
-#include "comm/communicator.hpp"
-#include "io/scene.hpp"
 #include "physics/solid/material.hpp"
-#include "src/setup/bodies.hpp"
+#include "src/setup/shape_reader.hpp"
 
 namespace talus {
 
-/// A body's table: shape, resolution and state at the start. `domain` is what shape = "domain" fills (the
-/// whole box). Faults are recorded in the scene.
-Body read_body(const Section& table, const Material& material, int dimension, const BoxShape& domain,
-               double first_spacing);
+/// A body's table: shape, resolution and state at the start. Faults are recorded in the scene. Collective.
+Body read_body(const Section& table, const Material& material, const BodyContext& context);
 
 }  // namespace talus

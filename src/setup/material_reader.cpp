@@ -82,6 +82,8 @@ Material read_material(const Section& table, const std::string& name) {
     material.bulk_modulus = bulk_modulus(material.eos);
     const Section strength = table.section("strength");
     if (strength.exists()) material.strength = read_strength(strength);
+    if (!std::holds_alternative<NoStrengthLimit>(material.strength) && material.shear_modulus == 0)
+        table.error("strength", "needs a shear_modulus: only a solid bears shear");
     const Section fracture = table.section("fracture");
     if (fracture.exists()) {
         material.fracture =

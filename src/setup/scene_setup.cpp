@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "src/setup/body_reader.hpp"
+#include "src/setup/impact_reader.hpp"
 #include "src/setup/material_reader.hpp"
 
 namespace talus {
@@ -127,28 +128,78 @@ PartitionMethod read_partition(const Section& table) {
     return PartitionMethod::metis;
 }
 
+void refuse_outside(const Section& table, const Body& body, const Box& box) {
+    const BoxShape around = bounds(body.shape, box.dimension);
+    for (int axis = 0; axis < box.dimension; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        if (box.boundary[a] != Boundary::open &&
+            (around.lower[a] < box.lower[a] || around.upper[a] > box.upper[a]))
+            table.error("shape",
+                        fmt::format("reaches out of the box along {}, where it is closed", "xyz"[a]));
+    }
+}
+
+void refuse_empty_bodies(const std::vector<Section>& tables, const SceneSetup& setup) {
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+        if (setup.census[b].count == 0)
+            tables[b].error(
+                tables[b].has("particles") ? "particles" : "spacing",
+                fmt::format("body '{}' has no particles: none of its lattice, {:.4g} m apart, lies "
+                            "inside; make it finer or give the body a spacing of its own",
+                            setup.bodies[b].name, setup.bodies[b].spacing));
+}
+
+void refuse_overlaps(const std::vector<Section>& tables, const SceneSetup& setup) {
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+        for (std::size_t other = 0; other < b; ++other)
+            if (overlap(setup.bodies[other], setup.bodies[b], setup.simulation.box.dimension))
+                tables[b].error("", fmt::format("body '{}' overlaps body '{}'", setup.bodies[b].name,
+                                                setup.bodies[other].name));
+}
+
+void arrange_impact(const ImpactPlan& plan, const Section& table, SceneSetup& setup) {
+    const PlannedImpact planned =
+        plan_impact(plan, setup.bodies, setup.census, setup.simulation.box.dimension);
+    if (!planned.impact) {
+        table.error(planned.key, planned.fault);
+        return;
+    }
+    setup.impact = planned.impact;
+    place(*setup.impact, setup.bodies, setup.census);
+}
+
 void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup) {
     const Section root = scene.root();
     const Box& box = setup.simulation.box;
     const std::vector<Section> tables = root.sections("body");
     if (tables.empty()) root.error("body", "a scene needs at least one [[body]]");
     if (tables.size() > 255) root.error("body", "more than 255 bodies");
-    for (const Section& table : tables) {
-        setup.simulation.materials.push_back(find_material(comm, scene, table));
-        const Material& material = setup.simulation.materials.back();
-        const double first_spacing = setup.bodies.empty() ? 0 : setup.bodies.front().spacing;
-        setup.bodies.push_back(
-            read_body(table, material, box.dimension, BoxShape{box.lower, box.upper}, first_spacing));
-        setup.simulation.held.push_back(table.flag("held", false));
-        for (int axis = 0; axis < box.dimension; ++axis) {
-            const auto a = static_cast<std::size_t>(axis);
-            const BoxShape around = bounds(setup.bodies.back().shape, box.dimension);
-            if (box.boundary[a] != Boundary::open &&
-                (around.lower[a] < box.lower[a] || around.upper[a] > box.upper[a]))
-                table.error("shape",
-                            fmt::format("reaches out of the box along {}, where it is closed", "xyz"[a]));
-        }
+    std::vector<std::string> names;
+    names.reserve(tables.size());
+    for (const Section& table : tables) names.push_back(table.text("name", table.path()));
+    std::optional<ImpactPlan> plan = read_impact(root, names, box.dimension);
+    if (plan) plan->gravitational_constant = setup.gravitational_constant;
+    setup.bodies.reserve(tables.size());
+    for (std::size_t b = 0; b < tables.size(); ++b) {
+        setup.simulation.materials.push_back(find_material(comm, scene, tables[b]));
+        const BodyContext context{.comm = comm,
+                                  .scene = scene,
+                                  .dimension = box.dimension,
+                                  .domain = {box.lower, box.upper},
+                                  .boundaries = box.boundary,
+                                  .first_body = b == 0 ? nullptr : &setup.bodies.front(),
+                                  .in_impact = plan && (plan->target == b || plan->impactor == b),
+                                  .seed = setup.seed};
+        setup.bodies.push_back(read_body(tables[b], setup.simulation.materials.back(), context));
+        setup.simulation.held.push_back(tables[b].flag("held", false));
     }
+    if (scene.faulty()) return;  // sizes and spacings may not fit each other
+    setup.census = take_census(setup.bodies, box.dimension, setup.seed);
+    refuse_empty_bodies(tables, setup);
+    if (scene.faulty()) return;
+    if (plan) arrange_impact(*plan, root.section("impact"), setup);
+    for (std::size_t b = 0; b < tables.size(); ++b) refuse_outside(tables[b], setup.bodies[b], box);
+    if (!scene.faulty()) refuse_overlaps(tables, setup);
 }
 
 /// Solids in contact bear neither tension nor shear across it, unless they are said to be bonded.
@@ -169,6 +220,8 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
     const int dimension = static_cast<int>(root.integer("dimension", 3, 1, 3));
     setup.simulation.box = read_box(root.section("box"), dimension);
+    if (const Section gravity = root.section("gravity"); gravity.exists())
+        setup.gravitational_constant = gravity.number("constant", "m3 kg-1 s-2", newton_constant, positive);
     read_bodies(comm, scene, setup);
     setup.simulation.sph = read_sph(root.section("sph"), dimension, setup.simulation.materials);
     read_contacts(root, setup);

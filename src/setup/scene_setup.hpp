@@ -5,7 +5,7 @@
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
 #include "src/analysis/analysis.hpp"
-#include "src/setup/bodies.hpp"
+#include "src/setup/impact.hpp"
 #include "src/simulation.hpp"
 
 namespace talus {
@@ -24,6 +24,9 @@ struct SceneSetup {
     std::string title;
     Setup simulation;
     std::vector<Body> bodies;
+    std::vector<BodyCensus> census;                   ///< one a body, of the bodies as they were read
+    std::optional<Impact> impact;                     ///< as the scene's [impact] table asks
+    double gravitational_constant = newton_constant;  ///< that of [gravity], if given [m3 kg-1 s-2]
     OutputPlan output;
     AnalysisPlan analysis;
     std::uint64_t seed = 0;

@@ -1,11 +1,10 @@
 #pragma once
-#include <array>
-#include <functional>
+#include <memory>
 #include <variant>
 
-namespace talus {
+#include "src/setup/surface_mesh.hpp"
 
-using Point = std::array<double, 3>;
+namespace talus {
 
 /// Region of space that a body fills at the start. Axes beyond the dimension are ignored.
 struct BoxShape {
@@ -18,8 +17,14 @@ struct SphereShape {
 };
 struct EllipsoidShape {
     Point centre, semi_axes;  ///< [m]
+    Rotation orientation;     ///< from the axes of the ellipsoid to those of space
 };
-using BodyShape = std::variant<BoxShape, SphereShape, EllipsoidShape>;
+/// Inside of a surface of triangles, in 3D.
+struct MeshShape {
+    Point centre;                                ///< where the surface's origin lies [m]
+    std::shared_ptr<const SurfaceMesh> surface;  ///< its origin is its centroid
+};
+using BodyShape = std::variant<BoxShape, SphereShape, EllipsoidShape, MeshShape>;
 
 bool contains(const BodyShape& shape, const Point& point, int dimension);
 /// Volume [m3], area [m2] or length [m].
@@ -28,15 +33,7 @@ double volume(const BodyShape& shape, int dimension);
 BoxShape bounds(const BodyShape& shape, int dimension);
 /// Middle of the shape, where lattices of round bodies are anchored.
 Point centre(const BodyShape& shape);
-
-enum class Lattice : unsigned char { cubic, close_packed };
-
-/// Calls visit(point) for every lattice point inside the shape, in an order that depends on nothing else.
-/// `spacing` is the D-th root of the volume per point [m]. cubic: square in 2D; close_packed: face-centred
-/// cubic in 3D, hexagonal in 2D. In a box the lattice is fitted to a whole number of cells along each axis,
-/// so that it continues through periodic boundaries; the volume per point is then that of the box divided by
-/// the number of points.
-void for_each_lattice_point(const BodyShape& shape, Lattice lattice, double spacing, int dimension,
-                            const std::function<void(const Point&)>& visit);
+/// The shape, moved.
+BodyShape moved(const BodyShape& shape, const Point& by);
 
 }  // namespace talus

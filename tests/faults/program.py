@@ -74,6 +74,15 @@ class BadInput(Case):
         self.assert_fails(talus("hash", self.folder / "none.h5", ranks=0), 3, "none.h5")
         self.assert_fails(talus("run", SCENE, "--quick", "--restart", "latest", "--out", self.out), 3, "checkpoint")
 
+    def test_a_shape_file_that_is_not_closed(self):
+        scene = (RUNS / "bilobed_impact" / "scene.toml").read_text()
+        shape = (RUNS / "bilobed_impact" / "bilobed.obj").read_text()
+        (self.folder / "bilobed.obj").write_text(shape[:shape.rindex("f ")])
+        line = 1 + scene[:scene.index("file =")].count("\n")
+        done = talus("run", self.scene(scene), "--out", self.out)
+        self.assert_fails(done, 2, rf"scene\.toml:{line}: body\[0\]\.file",
+                          r"bilobed\.obj: is not closed: 3 of 1920 edges are open")
+
     def test_usage(self):
         self.assert_fails(talus("run", ranks=0), 2, "scene")
         self.assert_fails(talus("run", SCENE, "--walltime", "soon"), 2, "soon")

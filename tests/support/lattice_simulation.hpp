@@ -6,7 +6,7 @@
 
 #include "comm/communicator.hpp"
 #include "physics/sph/kernels.hpp"
-#include "src/setup/shapes.hpp"
+#include "src/setup/packing.hpp"
 #include "src/simulation.hpp"
 #include "tests/support/lattice_dispersion.hpp"
 
@@ -146,8 +146,8 @@ class LatticeSimulation {
 
     Simulation make(const Communicator& comm, const Field& displacement, const Field& velocity) {
         const int dimension = lattice_.dimension;
-        for_each_lattice_point(BoxShape{{}, lattice_.size}, lattice_.lattice, 1, dimension,
-                               [this](const Point& site) { sites_.push_back(site); });
+        for_each_point(BoxShape{{}, lattice_.size}, lattice_cell(lattice_.lattice, dimension), 1, dimension,
+                       [this](const Point& site) { sites_.push_back(site); });
         const double density = lattice_state(lattice_).density;
         Setup setup;
         setup.box = {.dimension = dimension, .upper = lattice_.size};

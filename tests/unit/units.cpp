@@ -27,6 +27,25 @@ TEST(Units, ConvertToSi) {
     EXPECT_DOUBLE_EQ(convert_to_si("20 degC", "K"), 293.15);
 }
 
+TEST(Units, AsAstronomersWriteThem) {
+    EXPECT_DOUBLE_EQ(convert_to_si("1e12 kg", "kg"), 1e12);
+    EXPECT_DOUBLE_EQ(convert_to_si("3e21 g", "kg"), 3e18);
+    EXPECT_DOUBLE_EQ(convert_to_si("100 m/s", "m/s"), 100);
+    EXPECT_DOUBLE_EQ(convert_to_si("2 h", "s"), 7200);
+    EXPECT_DOUBLE_EQ(convert_to_si("6 hours", "s"), 21600);
+    EXPECT_DOUBLE_EQ(convert_to_si("1.5 d", "s"), 129600);
+    EXPECT_DOUBLE_EQ(convert_to_si("2 days", "s"), 172800);
+    EXPECT_DOUBLE_EQ(convert_to_si("10 min", "s"), 600);
+    EXPECT_DOUBLE_EQ(convert_to_si("1 yr", "s"), 31556925.9747);  // tropical
+    EXPECT_DOUBLE_EQ(convert_to_si("1 Myr", "s"), 31556925.9747e6);
+    EXPECT_DOUBLE_EQ(convert_to_si("2 au", "m"), 2 * 149597870700.0);  // IAU 2012, exact
+    EXPECT_DOUBLE_EQ(convert_to_si("4 turns/d", "rad/s"), 8 * std::numbers::pi / 86400);
+    EXPECT_DOUBLE_EQ(convert_to_si("360 deg/h", "rad/s"), 2 * std::numbers::pi / 3600);
+    EXPECT_DOUBLE_EQ(convert_to_si("2 rpm", "rad/s"), 4 * std::numbers::pi / 60);
+    EXPECT_DOUBLE_EQ(convert_to_si("2700 kg/m3", "kg/m3"), 2700);
+    EXPECT_DOUBLE_EQ(convert_to_si("10 Mt", "kg"), 1e10);
+}
+
 TEST(Units, AnglesAreRadians) {
     EXPECT_DOUBLE_EQ(convert_to_si("30 deg", "rad"), std::numbers::pi / 6);
     EXPECT_DOUBLE_EQ(convert_to_si("30 degree", "rad"), std::numbers::pi / 6);

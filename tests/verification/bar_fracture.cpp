@@ -187,7 +187,7 @@ TEST(FlawsOfAScene, AreThoseOfTheTheory) {
     options.quick = true;
     SceneSetup scene = read_scene(world, load_scene(world, options));
     const Fracture& fracture = *scene.simulation.materials[0].fracture;
-    const auto N = static_cast<double>(count_particles(scene.bodies[0], 3));
+    const auto N = static_cast<double>(scene.census[0].count);
     const double flaws_per_strain = fracture.weibull_k * std::pow(scene.bodies[0].spacing, 3);
     constexpr int seeds = 40;
     double mean_of_means = 0;

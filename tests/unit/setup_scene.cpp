@@ -1,0 +1,191 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "src/run/warnings.hpp"
+#include "src/setup/scene_setup.hpp"
+#include "tests/support/surfaces.hpp"
+
+/// Scenes as a user writes them: what bodies and impacts they give, and what is said about wrong ones.
+namespace talus::test {
+namespace {
+
+constexpr const char* run = "[run]\nend_time = 1\n";
+constexpr const char* rock = R"([materials.rock]
+density = 2700
+shear_modulus = "22.7 GPa"
+equation_of_state = { kind = "linear", sound_speed = "3 km/s" }
+fracture = { weibull_k = 4e35, weibull_m = 9 }
+)";
+constexpr const char* ice = R"([materials.ice]
+density = 920
+equation_of_state = { kind = "linear", sound_speed = "3 km/s" }
+)";
+
+constexpr const char* two_bodies = R"(
+[[body]]
+name = "target"
+material = "rock"
+shape = "sphere"
+radius = "50 km"
+particles = 500
+[[body]]
+name = "impactor"
+material = "ice"
+shape = "sphere"
+mass = "1e17 kg"
+)";
+
+class SceneFiles : public testing::Test {
+  protected:
+    void SetUp() override { std::filesystem::create_directories(folder_); }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+    /// The scene of `text` and the materials that it names.
+    SceneSetup read(const std::string& text) {
+        std::string whole = text + run;
+        if (text.find("\"rock\"") != std::string::npos) whole += rock;
+        if (text.find("\"ice\"") != std::string::npos) whole += ice;
+        return read_scene(comm_, Scene::parse(whole, folder_ / "s.toml"));
+    }
+    std::string fault_of(const std::string& text) {
+        try {
+            read(text);
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return "accepted";
+    }
+    void expect_fault(const std::string& text, const std::vector<std::string>& words) {
+        const std::string found = fault_of(text);
+        for (const std::string& word : words)
+            EXPECT_NE(found.find(word), std::string::npos) << "no '" << word << "' in:\n" << found;
+        EXPECT_EQ(std::count(found.begin(), found.end(), '\n'), 0) << "more than one fault:\n" << found;
+    }
+
+    Communicator comm_{MPI_COMM_SELF};
+    std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "talus_setup_scene";
+};
+
+TEST_F(SceneFiles, ImpactorFollowsTheTargetWithEqualMasses) {
+    const SceneSetup setup =
+        read(std::string(two_bodies) + "[impact]\nspeed = \"300 m/s\"\nangle = \"45 deg\"\n");
+    const double target = setup.census[0].mass / static_cast<double>(setup.census[0].count),
+                 impactor = setup.census[1].mass / static_cast<double>(setup.census[1].count);
+    EXPECT_NEAR(impactor / target, 1, 1e-12);
+    EXPECT_NEAR(volume(setup.bodies[1].shape, 3) * 920, 1e17, 1e5);
+    ASSERT_TRUE(setup.impact);
+    EXPECT_NEAR(setup.impact->contact.angle, std::numbers::pi / 4, 1e-15);
+    const double radius = std::cbrt(1e17 / 920 / (4.0 / 3 * std::numbers::pi));
+    EXPECT_NEAR(setup.impact->contact.distance, 50e3 + radius, 1e-6);
+    EXPECT_NEAR(norm(setup.impact->start.position),
+                50e3 + radius + std::max(setup.bodies[0].spacing, setup.bodies[1].spacing), 1e-6);
+    const SceneSetup other =
+        read(std::string(two_bodies) + "resolution = \"same_spacing\"\n[impact]\nspeed = 300\n");
+    EXPECT_EQ(other.bodies[1].spacing, other.bodies[0].spacing);
+}
+
+TEST_F(SceneFiles, SpinsAndTheirWarning) {
+    const std::string body = "[[body]]\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n";
+    const SceneSetup slow = read(body + "spin_period = \"6 h\"\nspin_axis = [0, 3, 4]\n"),
+                     fast = read(body + "spin_period = \"3 h\"\n");
+    EXPECT_NEAR(slow.bodies[0].spin[1], 0.6 * 2 * std::numbers::pi / 21600, 1e-18);
+    EXPECT_NEAR(slow.bodies[0].spin[2], 0.8 * 2 * std::numbers::pi / 21600, 1e-18);
+    EXPECT_TRUE(warnings(slow).empty());
+    ASSERT_EQ(warnings(fast).size(), 1u);  // 920 kg/m3 breaks up at 3.44 h
+    EXPECT_NE(warnings(fast)[0].find("from 3.44"), std::string::npos) << warnings(fast)[0];
+    expect_fault(body + "spin = [0, 0, 1]\nspin_period = \"3 h\"\n",
+                 {"s.toml:7: body[0].spin_period", "not both"});
+}
+
+TEST_F(SceneFiles, BodiesOfAnImpactHaveNoPlaceOfTheirOwn) {
+    expect_fault(std::string(two_bodies) + "velocity = [1, 0, 0]\n[impact]\nspeed = 300\n",
+                 {"s.toml:13: body[1].velocity", "[impact]"});
+    expect_fault(std::string(two_bodies) + "centre = [1, 0, 0]\n[impact]\nspeed = 300\n",
+                 {"s.toml:13: body[1].centre", "[impact]"});
+    expect_fault(std::string(two_bodies) + "[impact]\nspeed = 300\nangle = 0.1\noffset = 3\n",
+                 {"impact.offset", "not both"});
+    expect_fault(std::string(two_bodies) + "[impact]\nspeed = 300\nimpactor = \"impacter\"\n",
+                 {"s.toml:15: impact.impactor", "\"target\", \"impactor\""});
+    expect_fault(std::string(two_bodies) + "[impact]\nspeed = 300\noffset = \"100 km\"\n",
+                 {"s.toml:15: impact.offset", "pass each other"});
+    expect_fault(std::string(two_bodies) + "[impact]\nspeed = 300\nangle = \"91 deg\"\n",
+                 {"impact.angle", "too large"});
+}
+
+TEST_F(SceneFiles, BodiesThatOverlapOrAreEmpty) {
+    expect_fault(std::string(two_bodies) + "centre = [\"60 km\", 0, 0]\n",
+                 {"body 'impactor' overlaps body 'target'", "s.toml:8"});
+    EXPECT_EQ(fault_of(std::string(two_bodies) + "centre = [\"90 km\", 0, 0]\n"), "accepted");
+    expect_fault(
+        "[[body]]\nname = \"dust\"\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 10\n",
+        {"s.toml:6: body[0].spacing", "body 'dust' has no particles"});
+}
+
+TEST_F(SceneFiles, FractureNeedsAMaterialThatCracks) {
+    expect_fault(std::string(two_bodies) + "centre = [\"90 km\", 0, 0]\ndamage = 1\n",
+                 {"s.toml:14: body[1].damage", "'ice'", "[fracture]"});
+}
+
+TEST_F(SceneFiles, StrengthAndFractureNeedASolid) {
+    const std::string body = "[[body]]\nmaterial = \"mud\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n";
+    const std::string mud =
+        "[materials.mud]\ndensity = 2000\nequation_of_state = { kind = \"linear\", sound_speed = 1e3 }\n";
+    EXPECT_EQ(fault_of(body + mud), "accepted");
+    expect_fault(body + mud + "fracture = { weibull_k = 1e30, weibull_m = 9 }\n",
+                 {"s.toml:9: materials.mud.fracture", "shear_modulus"});
+    expect_fault(body + mud + "strength = { kind = \"von_mises\", yield_stress = 1e6 }\n",
+                 {"s.toml:9: materials.mud.strength", "shear_modulus"});
+}
+
+TEST_F(SceneFiles, ShapeFiles) {
+    const Polyhedron ball = icosphere(3);
+    write("ball.obj", obj_text(ball));
+    const std::string body =
+        "[[body]]\nmaterial = \"rock\"\nshape = \"mesh\"\nfile = \"ball.obj\"\nparticles = 2000\n";
+    const double unit_volume = integrate(ball).volume;
+    const auto volume_of = [&](const std::string& more) {
+        return volume(read(body + more).bodies[0].shape, 3);
+    };
+    EXPECT_NEAR(volume_of("") / (1e9 * unit_volume), 1, 1e-12) << "shape files are in km";
+    EXPECT_NEAR(volume_of("file_unit = \"2 m\"\n") / (8 * unit_volume), 1, 1e-12);
+    EXPECT_NEAR(volume_of("mean_radius = \"3 m\"\n") / (36 * std::numbers::pi), 1, 1e-12);
+    EXPECT_NEAR(volume_of("mass = \"5.4 Mg\"\n"), 2, 1e-12);
+    const SceneSetup setup =
+        read(body + "centre = [10, 20, 30]\norientation = [\"10 deg\", 0, \"20 deg\"]\n");
+    EXPECT_NEAR(static_cast<double>(setup.census[0].count) / 2000, 1, 0.02);
+    EXPECT_NEAR(centre(setup.bodies[0].shape)[2], 30, 1e-12);
+    // What lies in the shape by its lattice is what a sphere would hold, but for the lattice's surface.
+    EXPECT_NEAR(setup.census[0].mass / (2700 * 1e9 * unit_volume), 1, 0.02);
+
+    Polyhedron open = ball;
+    open.triangles.pop_back();
+    write("open.obj", obj_text(open));
+    const std::string of_open = "[[body]]\nmaterial = \"rock\"\nshape = \"mesh\"\nparticles = 100\nfile = ";
+    expect_fault(of_open + "\"open.obj\"\n",
+                 {"s.toml:5: body[0].file", "open.obj", "3 of 1920 edges are open"});
+    expect_fault(of_open + "\"none.obj\"\n", {"s.toml:5: body[0].file", "none.obj"});
+    expect_fault(
+        "[[body]]\nmaterial = \"none\"\nshape = \"mesh\"\nfile = \"ball.obj\"\nmass = 1\nparticles = 9\n",
+        {"s.toml:2: body[0].material"});
+    expect_fault(body + "mass = 1\nmean_radius = 1\n", {"body[0].mass", "not both"});
+}
+
+TEST_F(SceneFiles, GlassNeedsAnOpenBox) {
+    const std::string body =
+        "[[body]]\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n"
+        "lattice = \"glass\"\n";
+    EXPECT_EQ(fault_of(body), "accepted");
+    expect_fault("dimension = 1\n" + body, {"body[0].lattice", "one dimension"});
+    expect_fault(body +
+                     "[box]\nboundaries = [\"periodic\", \"open\", \"open\"]\nlower = [-2, -2, -2]\n"
+                     "upper = [2, 2, 2]\n",
+                 {"body[0].lattice", "closed boundaries"});
+}
+
+}  // namespace
+}  // namespace talus::test
