@@ -56,13 +56,6 @@ Point velocity_at(const Body& body, const Point& x, const Point& centre_of_mass,
     return plus(field, plus(body.velocity, cross(body.spin, minus(x, centre_of_mass))));
 }
 
-/// Volume that each particle of a body stands for.
-double particle_volume(const Body& body, std::uint64_t count, int dimension) {
-    if (body.cell.fits_boxes && std::holds_alternative<BoxShape>(body.shape))
-        return volume(body.shape, dimension) / static_cast<double>(count);
-    return std::pow(body.spacing, dimension);
-}
-
 /// Calls visit(id, position) for every particle of a body.
 template <class Visit>
 void for_each_particle(const Body& body, std::uint64_t first_id, int dimension, std::uint64_t seed,
@@ -128,7 +121,7 @@ std::vector<BodyCensus> take_census(const std::vector<Body>& bodies, int dimensi
             ++census.count;
         });
         if (census.count > 0) {
-            census.particle_volume = particle_volume(body, census.count, dimension);
+            census.particle_volume = volume(body.shape, dimension) / static_cast<double>(census.count);
             census.mass = body.density * census.particle_volume * static_cast<double>(census.count);
             census.centre_of_mass = plus(middle, times(1 / static_cast<double>(census.count), arms));
         }
