@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "src/setup/body_reader.hpp"
+#include "src/setup/gravity_reader.hpp"
 #include "src/setup/material_reader.hpp"
 
 namespace talus {
@@ -167,6 +168,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     read_bodies(comm, scene, setup);
     setup.simulation.sph = read_sph(root.section("sph"), dimension, setup.simulation.materials);
     read_contacts(root, setup);
+    setup.simulation.gravity = read_gravity(root, setup.simulation.box);
     const Section run = root.section("run");
     setup.output.end_time = run.number("end_time", "s", {}, positive);
     setup.simulation.first_time_step = run.has("first_time_step")

@@ -119,6 +119,31 @@ SmallScene periodic_gas_3d() {
     return {"periodic gas 3D", setup, std::move(particles)};
 }
 
+SmallScene collapsing_gas_3d() {
+    Setup setup;
+    setup.box.dimension = 3;
+    setup.sph.formulation = sph::Formulation::standard;
+    setup.sph.kernel = sph::KernelKind::wendland_c2;
+    setup.sph.density = sph::DensityMethod::summation;
+    setup.sph.variable_smoothing_length = true;
+    setup.sph.eta = 1.3;
+    setup.sph.largest_smoothing_length = 0.4;
+    setup.sph.courant = 0.3;
+    setup.gravity.emplace();
+    setup.gravity->constant = 40;  // collapses in a few sound crossings
+    setup.gravity->opening = gravity::Opening::relative;
+    setup.gravity->accuracy = 1e-3;
+    setup.materials = {ideal_gas()};
+    ParticleSet particles("gas", 3);
+    add_fields(particles, setup);
+    append(particles, {{10, 10, 10}, {}, 0.1});
+    fill_gas(particles, 0.1, 1.0, 0.13);
+    for (std::size_t i = 0; i < particles.size(); i += 37)  // some that escaped
+        particles.data(field::position, static_cast<int>(i % 3))[i] +=
+            std::pow(2.0, static_cast<double>(i % 12));
+    return {"collapsing gas 3D", setup, std::move(particles)};
+}
+
 SmallScene gas_between_walls_2d() {
     Setup setup;
     setup.box.dimension = 2;
