@@ -4,6 +4,7 @@
 
 #include "comm/decomposition.hpp"
 #include "physics/gravity/settings.hpp"
+#include "physics/gravity/softening.hpp"
 #include "physics/sph/motion.hpp"
 
 namespace talus::gravity {
@@ -28,10 +29,10 @@ class Gravity {
     /// `sph` names the kernel. Keeps a reference to `comm`.
     Gravity(const Communicator& comm, const Settings& settings, const sph::Settings& sph);
 
-    /// Writes gravity_acceleration and gravity_potential of the own particles; with Opening::relative reads the
-    /// former. `decomposition` and `grid` are those the particles are arranged by. Adds the work of each own
-    /// cell, in the unit of a pair of SPH, to `work_of_cell`. Throws AgreedError if the tree lacks a part.
-    /// Collective.
+    /// Writes gravity_acceleration and gravity_potential of the own particles; with Opening::relative reads
+    /// the former. `decomposition` and `grid` are those the particles are arranged by. Adds the work of each
+    /// own cell, in the unit of a pair of SPH, to `work_of_cell`. Throws AgreedError if the tree lacks a
+    /// part. Collective.
     void evaluate(ParticleSet& particles, const CellGrid& grid, const Decomposition& decomposition,
                   std::span<double> work_of_cell);
 
@@ -47,7 +48,7 @@ class Gravity {
 
     const Communicator& comm_;
     const Settings settings_;
-    const sph::Settings sph_;
+    const Softening<double> softening_;
     Counts counts_;
 };
 

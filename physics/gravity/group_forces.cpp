@@ -3,9 +3,9 @@
 namespace talus::gravity {
 
 template <class Scalar>
-GroupForces<Scalar>::GroupForces(const Tree& tree, const OpeningTest& opening, const sph::Settings& sph,
-                                 const Units& units)
-    : tree_(tree), opening_(opening), softening_(softening_of<Scalar>(sph)), units_(units) {
+GroupForces<Scalar>::GroupForces(const Tree& tree, const OpeningTest& opening,
+                                 const Softening<double>& softening, const Units& units)
+    : tree_(tree), opening_(opening), softening_(rounded<Scalar>(softening)), units_(units) {
     const double second = 1 / (units.mass * units.length * units.length), third = second / units.length;
     multipoles_.resize(tree.nodes.size());
     for (std::size_t k = 0; k < tree.nodes.size(); ++k) {
@@ -19,7 +19,8 @@ GroupForces<Scalar>::GroupForces(const Tree& tree, const OpeningTest& opening, c
         }
         if (opening.order >= 3) {
             const auto octupole = octupole_of(moments);
-            for (std::size_t c = 0; c < 10; ++c) source.octupole[c] = static_cast<Scalar>(octupole[c] * third);
+            for (std::size_t c = 0; c < 10; ++c)
+                source.octupole[c] = static_cast<Scalar>(octupole[c] * third);
         }
     }
 }
@@ -56,7 +57,7 @@ template <class Scalar>
 void GroupForces<Scalar>::list_sources(const Target& target) {
     points_.clear();
     softened_.clear();
-    nodes_.clear();
+    for (auto& nodes : nodes_) nodes.clear();
     stack_.assign(1, tree_.root);
     while (!stack_.empty()) {
         const std::uint32_t place = stack_.back();
@@ -65,9 +66,12 @@ void GroupForces<Scalar>::list_sources(const Target& target) {
         if (node.is_lone()) {
             const Source source{node.moments.centre, node.moments.mass, node.target.largest_softening};
             list_particles({&source, 1}, target);
-        } else if (opening_.accepts(node, target)) {
-            nodes_.push_back(multipoles_[place]);
-            nodes_.back().position = relative(node.moments.centre);
+            continue;
+        }
+        if (const int order = opening_.order_for(node, target)) {
+            auto& nodes = nodes_[static_cast<std::size_t>(order - 1)];
+            nodes.push_back(multipoles_[place]);
+            nodes.back().position = relative(node.moments.centre);
         } else if (!node.is_here) {
             found_gap_ = true;
         } else if (node.is_leaf) {
@@ -84,11 +88,12 @@ PairCounts GroupForces<Scalar>::evaluate(const Group& group) {
     list_sources(group.target);
     add_points(targets_, points_);
     add_softened(targets_, softened_, softening_);
-    if (opening_.order == 1) add_nodes<1>(targets_, nodes_);
-    if (opening_.order == 2) add_nodes<2>(targets_, nodes_);
-    if (opening_.order == 3) add_nodes<3>(targets_, nodes_);
+    add_nodes<1>(targets_, nodes_[0]);
+    add_nodes<2>(targets_, nodes_[1]);
+    add_nodes<3>(targets_, nodes_[2]);
     const std::uint64_t size = group.end - group.begin;
-    return {size * points_.size(), size * softened_.size(), size * nodes_.size()};
+    return {size * points_.size(), size * softened_.size(),
+            size * (nodes_[0].size() + nodes_[1].size() + nodes_[2].size())};
 }
 
 template class GroupForces<float>;

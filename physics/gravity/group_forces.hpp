@@ -25,7 +25,8 @@ struct PairCounts {
 template <class Scalar>
 class GroupForces {
   public:
-    GroupForces(const Tree& tree, const OpeningTest& opening, const sph::Settings& sph, const Units& units);
+    GroupForces(const Tree& tree, const OpeningTest& opening, const Softening<double>& softening,
+                const Units& units);
 
     /// Evaluates a group. The results, for sources group.begin on, hold until the next call.
     PairCounts evaluate(const Group& group);
@@ -62,7 +63,7 @@ class GroupForces {
     std::vector<std::uint32_t> stack_;
     std::vector<PointSource<Scalar>> points_;
     std::vector<SoftSource<Scalar>> softened_;
-    std::vector<NodeSource<Scalar>> nodes_;
+    std::array<std::vector<NodeSource<Scalar>>, 3> nodes_;  ///< by order, from 1
     bool found_gap_ = false;
 };
 

@@ -13,8 +13,8 @@ namespace talus::gravity {
 /// one. Their count is padded to whole packs by repeating the last one.
 template <class Scalar>
 struct Targets {
-    using Pack = std::experimental::simd<
-        Scalar, std::experimental::simd_abi::deduce_t<Scalar, 32 / sizeof(Scalar)>>;
+    using Pack =
+        std::experimental::simd<Scalar, std::experimental::simd_abi::deduce_t<Scalar, 32 / sizeof(Scalar)>>;
 
     std::size_t count = 0;  ///< padded
     std::array<std::vector<Scalar>, 3> position, acceleration;
@@ -71,10 +71,20 @@ void for_each_pack(Targets<Scalar>& targets, Add&& add) {
         }
         sums[3].copy_from(targets.potential.data() + t, unaligned);
         add(x, sums, t);
-        for (std::size_t a = 0; a < 3; ++a)
-            sums[a].copy_to(targets.acceleration[a].data() + t, unaligned);
+        for (std::size_t a = 0; a < 3; ++a) sums[a].copy_to(targets.acceleration[a].data() + t, unaligned);
         sums[3].copy_to(targets.potential.data() + t, unaligned);
     }
+}
+
+/// From a source to a pack of targets.
+template <class Pack>
+struct Offset {
+    Pack x, y, z, squared;
+};
+template <class Pack, class Scalar>
+Offset<Pack> offset(const std::array<Pack, 3>& targets, const std::array<Scalar, 3>& source) {
+    const Pack x = targets[0] - source[0], y = targets[1] - source[1], z = targets[2] - source[2];
+    return {x, y, z, x * x + y * y + z * z};
 }
 
 /// Points beyond the softening of every target.
@@ -83,9 +93,7 @@ void add_points(Targets<Scalar>& targets, const std::vector<PointSource<Scalar>>
     using Pack = typename Targets<Scalar>::Pack;
     for_each_pack(targets, [&](const std::array<Pack, 3>& x, std::array<Pack, 4>& sums, std::size_t) {
         for (const PointSource<Scalar>& source : sources) {
-            const Pack dx = x[0] - source.position[0], dy = x[1] - source.position[1],
-                       dz = x[2] - source.position[2];
-            const Pack r2 = dx * dx + dy * dy + dz * dz;
+            const auto [dx, dy, dz, r2] = offset(x, source.position);
             const Pack u = Scalar(1) / sqrt(r2);
             const Pack potential = source.mass * u, force = potential * (u * u);
             sums[0] -= force * dx;
@@ -105,9 +113,7 @@ void add_softened(Targets<Scalar>& targets, const std::vector<SoftSource<Scalar>
         const Pack h_target(targets.softening.data() + t, std::experimental::element_aligned);
         const Pack support = softening.support;
         for (const SoftSource<Scalar>& source : sources) {
-            const Pack dx = x[0] - source.position[0], dy = x[1] - source.position[1],
-                       dz = x[2] - source.position[2];
-            const Pack r2 = dx * dx + dy * dy + dz * dz;
+            const auto [dx, dy, dz, r2] = offset(x, source.position);
             const Pack r = sqrt(r2), u = Scalar(1) / max(r, Pack(std::numeric_limits<Scalar>::min()));
             const Pack h = Scalar(0.5) * (h_target + source.softening);
             Pack force = u * u * u, potential = u;
@@ -133,9 +139,7 @@ void add_nodes(Targets<Scalar>& targets, const std::vector<NodeSource<Scalar>>& 
     using Pack = typename Targets<Scalar>::Pack;
     for_each_pack(targets, [&](const std::array<Pack, 3>& x, std::array<Pack, 4>& sums, std::size_t) {
         for (const NodeSource<Scalar>& source : sources) {
-            const Pack dx = x[0] - source.position[0], dy = x[1] - source.position[1],
-                       dz = x[2] - source.position[2];
-            const Pack r2 = dx * dx + dy * dy + dz * dz;
+            const auto [dx, dy, dz, r2] = offset(x, source.position);
             const Pack u = Scalar(1) / sqrt(r2), u2 = u * u;
             const Pack nx = dx * u, ny = dy * u, nz = dz * u;
             // potential = -u (mass + u^2 Qnn + u^3 Onnn)

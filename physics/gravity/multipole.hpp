@@ -7,8 +7,16 @@ namespace talus::gravity {
 /// Components of symmetric tensors of three dimensions, in the order of storage.
 inline constexpr std::array<std::array<std::size_t, 2>, 6> pair_axes{
     {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
-inline constexpr std::array<std::array<std::size_t, 3>, 10> triple_axes{
-    {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0, 0, 1}, {0, 0, 2}, {0, 1, 1}, {1, 1, 2}, {0, 2, 2}, {1, 2, 2}, {0, 1, 2}}};
+inline constexpr std::array<std::array<std::size_t, 3>, 10> triple_axes{{{0, 0, 0},
+                                                                         {1, 1, 1},
+                                                                         {2, 2, 2},
+                                                                         {0, 0, 1},
+                                                                         {0, 0, 2},
+                                                                         {0, 1, 1},
+                                                                         {1, 1, 2},
+                                                                         {0, 2, 2},
+                                                                         {1, 2, 2},
+                                                                         {0, 1, 2}}};
 
 /// Place of (a, b) in the storage of a symmetric tensor.
 constexpr std::size_t pair_index(std::size_t a, std::size_t b) { return a == b ? a : a + b + 2; }

@@ -1,5 +1,4 @@
 #include <limits>
-#include <numeric>
 
 #include "physics/gravity/tree.hpp"
 
@@ -148,7 +147,8 @@ void OwnTree::make_leaf(Node& node, std::uint32_t begin, std::uint32_t end) cons
 
 void OwnTree::make(std::uint32_t place, std::uint32_t begin, std::uint32_t end, bool in_group) {
     const int level = common_level(keys_[begin], keys_[end - 1]);
-    const bool in_block = level >= block_level_, is_leaf = (in_block && end - begin <= leaf_size_) || level == last_level;
+    const bool in_block = level >= block_level_,
+               is_leaf = (in_block && end - begin <= leaf_size_) || level == last_level;
     const bool is_group = !in_group && in_block && (is_leaf || end - begin <= group_size_);
     Node node;
     if (is_leaf) {
@@ -182,7 +182,8 @@ Node joined(std::span<const Node> parts) {
     node.target = parts[0].target;
     for (const Node& part : parts) {
         node.target.bounds.include(part.target.bounds);
-        node.target.largest_softening = std::max(node.target.largest_softening, part.target.largest_softening);
+        node.target.largest_softening =
+            std::max(node.target.largest_softening, part.target.largest_softening);
         node.target.least_acceleration =
             std::min(node.target.least_acceleration, part.target.least_acceleration);
     }
@@ -192,8 +193,7 @@ Node joined(std::span<const Node> parts) {
     double from_parts = 0;
     for (const Node& part : parts) {
         node.moments.add_part(part.moments);
-        from_parts =
-            std::max(from_parts, distance(part.moments.centre, node.moments.centre) + part.radius);
+        from_parts = std::max(from_parts, distance(part.moments.centre, node.moments.centre) + part.radius);
     }
     std::array<double, 3> corner;
     const Bounds& bounds = node.target.bounds;

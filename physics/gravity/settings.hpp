@@ -16,14 +16,14 @@ enum class Precision : std::uint8_t { single_precision, double_precision };
 struct Settings {
     double constant = 6.67430e-11;  ///< of gravitation, CODATA 2018 [m3 kg-1 s-2]
     Opening opening = Opening::geometric;
-    double theta = 0.7;           ///< for Opening::geometric, and for the first step of Opening::relative
+    double theta = 0.65;          ///< for Opening::geometric, and for the first step of Opening::relative
     double accuracy = 1e-4;       ///< for Opening::relative [1]
     int order = 3;                ///< highest multipole: 1 mass alone, 2 quadrupole, 3 octupole
     bool direct = false;          ///< every pair, for reference: work grows as the square of the particles
     double softening_length = 0;  ///< in place of every smoothing length [m]; 0: the smoothing lengths
     double step_factor = 0.5;     ///< C in dt = C sqrt(h/|g|)
     Precision precision = Precision::single_precision;
-    int leaf_size = 8;    ///< most particles in a leaf of the tree
+    int leaf_size = 32;   ///< most particles in a leaf of the tree
     int group_size = 64;  ///< most particles that share a list of interactions
 };
 

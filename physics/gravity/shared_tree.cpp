@@ -63,10 +63,10 @@ class SharedTree {
     Tree& tree_;
     const Communicator& comm_;
     const OpeningTest opening_;
-    std::vector<Branch> branches_;   ///< in order of key
-    Places branch_places_;           ///< among the nodes
+    std::vector<Branch> branches_;    ///< in order of key
+    Places branch_places_;            ///< among the nodes
     std::uint32_t first_shared_ = 0;  ///< of the nodes that ranks share, to the branches
-    Places branch_of_;               ///< of each of those nodes, or none
+    Places branch_of_;                ///< of each of those nodes, or none
     static constexpr std::uint32_t none = ~0u;
 };
 
@@ -107,8 +107,8 @@ void SharedTree::make(std::uint32_t place, std::uint32_t begin, std::uint32_t en
     tree_.nodes[place] = node;
 }
 
-/// Lists the other ranks' branches, at or below the shared node at `place`, on behalf of which `node` may have
-/// to be opened.
+/// Lists the other ranks' branches, at or below the shared node at `place`, on behalf of which `node` may
+/// have to be opened.
 void SharedTree::find_needing(const Node& node, std::uint32_t place, std::map<int, Places>& by_rank) const {
     const Node& target = tree_.nodes[place];
     if (!may_open(node, target)) return;

@@ -44,10 +44,9 @@ std::array<double, N> through_lobatto_nodes(const std::array<double, N>& values)
 
 }  // namespace
 
-template <class Scalar>
-Softening<Scalar> softening_of(const sph::Settings& settings) {
-    constexpr std::size_t N = Softening<Scalar>::force_terms;
-    Softening<Scalar> result{};
+Softening<double> softening_of(const sph::Settings& settings) {
+    constexpr std::size_t N = Softening<double>::force_terms;
+    Softening<double> result{};
     sph::with_kernel<3>(settings, [&](const auto& kernel) {
         const double s = kernel.support(), half = 0.5 * s;
         std::array<double, N> values;
@@ -65,15 +64,9 @@ Softening<Scalar> softening_of(const sph::Settings& settings) {
         double at_end = 0;
         for (const double c : potential) at_end += c;
         potential[0] = 1 / s - at_end;
-        result.support = static_cast<Scalar>(s);
-        for (std::size_t p = 0; p < N; ++p) result.force_coefficients[p] = static_cast<Scalar>(force[p]);
-        for (std::size_t p = 0; p < N + 2; ++p)
-            result.potential_coefficients[p] = static_cast<Scalar>(potential[p]);
+        result = {s, force, potential};
     });
     return result;
 }
-
-template Softening<float> softening_of(const sph::Settings&);
-template Softening<double> softening_of(const sph::Settings&);
 
 }  // namespace talus::gravity

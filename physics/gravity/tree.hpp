@@ -74,24 +74,32 @@ struct Node {
 /// every part of it: distances and accelerations can only be larger, and rounding keeps the order.
 struct OpeningTest {
     bool relative;
-    double theta2;          ///< square of the greatest radius over distance
-    double half_support;    ///< of the softening kernel, halved [h]
-    double constant;        ///< of gravitation
-    double accuracy;        ///< error over the least acceleration
-    int order;              ///< of the multipoles
+    double theta2;        ///< square of the greatest radius over distance
+    double half_support;  ///< of the softening kernel, halved [h]
+    double constant;      ///< of gravitation
+    double accuracy;      ///< error over the least acceleration
+    int order;            ///< of the multipoles
 
-    /// Softened pairs are never taken together: softening ends at half the support times the sum of both h.
-    bool accepts(const Node& node, const Target& target) const {
+    /// The multipoles that represent a node: 0 if it must be opened, less than `order` if the next multipole
+    /// adds little even at this distance. Softened pairs are never taken together: softening ends at half the
+    /// support times the sum of both h.
+    int order_for(const Node& node, const Target& target) const {
         const double d2 = target.bounds.squared_distance(node.moments.centre);
         const double reach =
             node.radius + half_support * (node.target.largest_softening + target.largest_softening);
         const double ratio = node.radius * node.radius / d2;
-        if (!(d2 > reach * reach) || !(ratio < theta2)) return false;
-        if (!relative) return true;
-        // The first multipole left out, at most.
-        const double power = order == 1 ? ratio : order == 2 ? ratio * std::sqrt(ratio) : ratio * ratio;
-        return constant * node.moments.mass * power < accuracy * target.least_acceleration * d2;
+        if (!(d2 > reach * reach) || !(ratio < theta2)) return 0;
+        // Size of the first multipole left out, over that of the mass.
+        const double after_third = ratio * ratio, after_second = ratio * std::sqrt(ratio);
+        const double after = order == 1 ? ratio : order == 2 ? after_second : after_third;
+        const double pull = relative ? constant * node.moments.mass / (accuracy * d2) : 1;
+        const double allowed = relative ? target.least_acceleration : theta2 * theta2;
+        if (relative && !(pull * after < allowed)) return 0;
+        return order == 3 && pull * after_second < negligible * allowed ? 2 : order;
     }
+    bool accepts(const Node& node, const Target& target) const { return order_for(node, target) > 0; }
+
+    static constexpr double negligible = 0.5;  ///< of the error allowed
 };
 
 /// Own particles that share a list of interactions.

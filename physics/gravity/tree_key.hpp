@@ -8,7 +8,8 @@
 namespace talus::gravity {
 
 /// Place of a particle in the octree: Morton key of its cell of the global grid, then of its place within the
-/// cell. Each octal digit, most significant first, chooses a child; a node is what agrees in its first digits.
+/// cell. Each octal digit, most significant first, chooses a child; a node is what agrees in its first
+/// digits.
 struct TreeKey {
     std::uint64_t cell, within;
     auto operator<=>(const TreeKey&) const = default;

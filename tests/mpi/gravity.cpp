@@ -53,7 +53,8 @@ TEST(GravitySameBits, WhoeverOwnsWhat) {
                 GravityCloud shared(world, kind, count, method);
                 shared.evaluate(settings);
                 const gravity::Counts mine = shared.evaluate(settings);
-                EXPECT_TRUE(same_bits(shared.forces(), expected)) << kind << ", method " << static_cast<int>(method);
+                EXPECT_TRUE(same_bits(shared.forces(), expected))
+                    << kind << ", method " << static_cast<int>(method);
                 EXPECT_EQ(world.all_sum(mine.interactions()), counts.interactions());
                 EXPECT_EQ(world.all_sum(mine.nodes), counts.nodes);
             }
@@ -84,8 +85,8 @@ TEST(GravityTree, ErrorFallsWithTheAngleAndTheOrder) {
                     of_lower_order = error.rms;
                 }
             }
-            gravity::Settings settings = settings_of({gravity::Opening::relative,
-                                                      gravity::Precision::double_precision, order});
+            gravity::Settings settings =
+                settings_of({gravity::Opening::relative, gravity::Precision::double_precision, order});
             double of_coarser = 1;
             for (const double accuracy : {1e-2, 1e-3, 1e-4}) {
                 settings.accuracy = accuracy;
@@ -104,8 +105,7 @@ TEST(GravityTree, SmallestAngleGivesTheDirectSum) {
         GravityCloud cloud(comm, kind, 400);
         cloud.evaluate(direct());
         const GravityCloud::Forces exact = cloud.forces();
-        gravity::Settings settings =
-            settings_of({.precision = gravity::Precision::double_precision});
+        gravity::Settings settings = settings_of({.precision = gravity::Precision::double_precision});
         settings.theta = 1e-6;
         const gravity::Counts counts = cloud.evaluate(settings);
         EXPECT_EQ(counts.nodes, 0u);

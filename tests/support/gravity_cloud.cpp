@@ -53,7 +53,8 @@ GravityCloud::GravityCloud(const Communicator& comm_, const std::string& kind, s
         particles.data(field::id)[i] = i;
         const auto x = place(kind, i);
         for (int a = 0; a < 3; ++a) particles.data(field::position, a)[i] = x[static_cast<std::size_t>(a)];
-        particles.data(field::mass)[i] = (1 + 0.5 * random_numbers.uniform(i, 2000)) / static_cast<double>(count);
+        particles.data(field::mass)[i] =
+            (1 + 0.5 * random_numbers.uniform(i, 2000)) / static_cast<double>(count);
         particles.data(field::smoothing_length)[i] = spacing * (1 + 0.1 * random_numbers.uniform(i, 2001));
     }
     Box box;

@@ -9,8 +9,8 @@
 namespace talus::test {
 
 /// A cloud of particles at random places, arranged on the ranks of `comm`, and its gravity.
-///   sphere: filled evenly, radius 1; pair: two such spheres, of equal density, 4 apart; clumps: half of them in
-///   five small spheres within one; ejecta: a sphere, and one in fifty up to 1e3 away.
+///   sphere: filled evenly, radius 1; pair: two such spheres, of equal density, 4 apart; clumps: half of them
+///   in five small spheres within one; ejecta: a sphere, and one in fifty up to 1e3 away.
 class GravityCloud {
   public:
     GravityCloud(const Communicator& comm, const std::string& kind, std::size_t count,

@@ -39,12 +39,11 @@ struct KernelCase {
 
 TEST(GravitySoftening, IsTheFieldOfTheKernel) {
     using enum sph::KernelKind;
-    for (const KernelCase& c :
-         {KernelCase{with(gaussian, 2), 1e-6}, KernelCase{with(gaussian, 2.5), 1e-6},
-          KernelCase{with(gaussian, 4), 2e-4}, KernelCase{with(cubic_spline), 2e-4},
-          KernelCase{with(wendland_c2), 1e-6}, KernelCase{with(wendland_c4), 1e-6},
-          KernelCase{with(wendland_c6), 1e-6}}) {
-        const auto softening = gravity::softening_of<double>(c.settings);
+    for (const KernelCase& c : {KernelCase{with(gaussian, 2), 1e-6}, KernelCase{with(gaussian, 2.5), 1e-6},
+                                KernelCase{with(gaussian, 4), 2e-4}, KernelCase{with(cubic_spline), 2e-4},
+                                KernelCase{with(wendland_c2), 1e-6}, KernelCase{with(wendland_c4), 1e-6},
+                                KernelCase{with(wendland_c6), 1e-6}}) {
+        const auto softening = gravity::softening_of(c.settings);
         const double s = c.settings.kernel_support();
         EXPECT_EQ(softening.support, s);
         for (double q = 0.05 * s; q < s; q += 0.05 * s)
@@ -138,10 +137,9 @@ std::array<double, 2> far_error(double distance) {
     std::vector<gravity::PointSource<double>> points;
     for (const auto& source : sources) points.push_back({source.position, source.mass});
     gravity::add_points(direct, points);
-    gravity::add_nodes<order>(multipole,
-                              std::vector<gravity::NodeSource<double>>{{moments.centre, moments.mass,
-                                                                        gravity::quadrupole_of(moments),
-                                                                        gravity::octupole_of(moments)}});
+    gravity::add_nodes<order>(multipole, std::vector<gravity::NodeSource<double>>{
+                                             {moments.centre, moments.mass, gravity::quadrupole_of(moments),
+                                              gravity::octupole_of(moments)}});
     std::array<double, 2> error{};
     for (std::size_t k = 0; k < 8; ++k) {
         double error2 = 0;
@@ -157,7 +155,8 @@ TEST(GravityMoments, ErrorFallsByThePowerOfTheOrder) {
     // The first multipole left out, l = order + 1, is (1/d)^l of the whole: doubling d divides by 2^l.
     const auto expect_order = [](auto far_error_at, int l) {
         const auto near = far_error_at(20.0), far = far_error_at(40.0);
-        for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(std::log2(near[k] / far[k]), l, 0.2) << "order " << l - 1;
+        for (std::size_t k = 0; k < 2; ++k)
+            EXPECT_NEAR(std::log2(near[k] / far[k]), l, 0.2) << "order " << l - 1;
     };
     expect_order(far_error<1>, 2);
     expect_order(far_error<2>, 3);
@@ -169,18 +168,12 @@ TEST(GravityMoments, ErrorFallsByThePowerOfTheOrder) {
 /// corner and a target next to a light particle in the opposite one; with cell size over distance as
 /// criterion the error is then unbounded for theta > 1/sqrt(3).
 TEST(GravityOpening, TakesNoLopsidedCellTogether) {
-    gravity::OpeningTest opening{.relative = false,
-                                 .theta2 = 0.81,
-                                 .half_support = 1,
-                                 .constant = 1,
-                                 .accuracy = 1e-3,
-                                 .order = 3};
+    gravity::OpeningTest opening{
+        .relative = false, .theta2 = 0.81, .half_support = 1, .constant = 1, .accuracy = 1e-3, .order = 3};
     gravity::Node node{};  // of a cell of size 1, the light particle at (1, 1, 1)
     node.moments.mass = 1;
     node.radius = std::sqrt(3.0);
-    const auto at = [](double x, double h) {
-        return gravity::Target{{{x, x, x}, {x, x, x}}, h, 1e-2};
-    };
+    const auto at = [](double x, double h) { return gravity::Target{{{x, x, x}, {x, x, x}}, h, 1e-2}; };
     EXPECT_FALSE(opening.accepts(node, at(1.05, 0.01))) << "1/(1.05 sqrt(3)) < 0.9 by the cell's size";
     EXPECT_FALSE(opening.accepts(node, at(1.11, 0.01)));
     EXPECT_TRUE(opening.accepts(node, at(1.12, 0.01)));
@@ -192,7 +185,7 @@ TEST(GravityOpening, TakesNoLopsidedCellTogether) {
 }
 
 TEST(GravityPairs, ForcesAreOppositeAndSelfIsLeftOut) {
-    const auto softening = gravity::softening_of<double>(with(sph::KernelKind::gaussian));
+    const auto softening = gravity::softening_of(with(sph::KernelKind::gaussian));
     for (const double distance : {0.0, 0.3, 1.1, 2.4, 5.0}) {
         const std::vector<gravity::SoftSource<double>> sources{{{0, 0, 0}, 3, 1}, {{distance, 0, 0}, 2, 1.4}};
         gravity::Targets<double> targets;
@@ -203,7 +196,8 @@ TEST(GravityPairs, ForcesAreOppositeAndSelfIsLeftOut) {
         }
         targets.pad(2);
         gravity::add_softened(targets, sources, softening);
-        EXPECT_DOUBLE_EQ(3 * targets.acceleration[0][0], -2 * targets.acceleration[0][1]) << "at " << distance;
+        EXPECT_DOUBLE_EQ(3 * targets.acceleration[0][0], -2 * targets.acceleration[0][1])
+            << "at " << distance;
         EXPECT_DOUBLE_EQ(3 * targets.potential[0], 2 * targets.potential[1]) << "at " << distance;
         if (distance > 2.4) {
             EXPECT_NEAR(targets.acceleration[0][0], 2 / (distance * distance), 1e-15);

@@ -22,7 +22,7 @@ Orbit run_orbit(const Communicator& comm, double eccentricity, double step_facto
                         .eos = LinearEquationOfState{.reference_density = 1, .sound_speed = 1e-3},
                         .reference_density = 1}};
     const double mass[2] = {6e20, 2e20}, total = 8e20, axis = 1e6;  // of the relative orbit [m]
-    const double apart = axis * (1 + eccentricity);                  // it starts at the far point
+    const double apart = axis * (1 + eccentricity);                 // it starts at the far point
     const double mu = setup.gravity->constant * total;
     const double speed = std::sqrt(mu / axis * (1 - eccentricity) / (1 + eccentricity));
     const double period = 2 * M_PI * std::sqrt(axis * axis * axis / mu);
@@ -45,14 +45,14 @@ Orbit run_orbit(const Communicator& comm, double eccentricity, double step_facto
     Orbit orbit{};
     for (double before = 0, time_before = 0; run.time() < 1.5 * period;) {
         run.step();
-        orbit.energy_drift =
-            std::max(orbit.energy_drift, std::abs(run.totals().total_energy() / energy - 1));
+        orbit.energy_drift = std::max(orbit.energy_drift, std::abs(run.totals().total_energy() / energy - 1));
         std::array<double, 6> relative{};  // position and velocity of one from the other
         for (std::size_t i = 0; i < run.particles().size(); ++i)
             for (int a = 0; a < 3; ++a) {
                 const double sign = run.particles().data(field::id)[i] == 0 ? -1 : 1;
                 relative[static_cast<std::size_t>(a)] += sign * run.particles().data(field::position, a)[i];
-                relative[static_cast<std::size_t>(a + 3)] += sign * run.particles().data(field::velocity, a)[i];
+                relative[static_cast<std::size_t>(a + 3)] +=
+                    sign * run.particles().data(field::velocity, a)[i];
             }
         const auto all = comm.all_gather(std::span<const double>(relative));
         for (std::size_t k = 0; k < 6; ++k) {
@@ -82,7 +82,8 @@ TEST(TwoBodies, KeepToKeplersEllipse) {
             if (comm.is_root())
                 fmt::print("| {} | {:.1e} | {:.1e} | {:.1e} |\n", eccentricity, orbit.energy_drift,
                            orbit.period_error, orbit.distance_error);
-        // Leapfrog is of second order: a quarter at half the step, and no more than 1e-3 at 300 steps an orbit.
+        // Leapfrog is of second order: a quarter at half the step, and no more than 1e-3 at 300 steps an
+        // orbit.
         EXPECT_LT(coarse.energy_drift, 2e-3);
         EXPECT_LT(coarse.period_error, 2e-3);
         EXPECT_LT(coarse.distance_error, 2e-3);

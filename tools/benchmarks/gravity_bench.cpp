@@ -1,22 +1,16 @@
-// gravity_bench [PARTICLES [CLOUD [LEAF_SIZE [GROUP_SIZE]]]]: error against the direct sum, interactions and time of the
-// tree, for orders, opening angles and precisions. CLOUD: sphere, pair or clumps.
+// gravity_bench [PARTICLES [CLOUD [LEAF_SIZE [GROUP_SIZE]]]]: error against the direct sum, interactions and
+// time of the tree, for orders, opening angles and precisions. CLOUD: sphere, pair or clumps.
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <ctime>
 
 #include "comm/environment.hpp"
 #include "tests/support/gravity_cloud.hpp"
+#include "tools/benchmarks/processor_time.hpp"
 
 using namespace talus;
 
 namespace {
-
-double processor_time() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 void measure(test::GravityCloud& cloud, const gravity::Settings& settings,
              const test::GravityCloud::Forces& exact) {
