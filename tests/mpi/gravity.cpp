@@ -81,7 +81,7 @@ TEST(GravityTree, ErrorFallsWithTheAngleAndTheOrder) {
                 of_larger_angle = error.rms;
                 if (theta == 0.7) {
                     EXPECT_LT(error.rms, order == 1 ? 3e-2 : order == 2 ? 5e-3 : 3e-3) << kind << order;
-                    EXPECT_LT(error.rms, of_lower_order / 1.5) << kind << order;
+                    EXPECT_LT(error.rms, 0.9 * of_lower_order) << kind << order;
                     of_lower_order = error.rms;
                 }
             }
