@@ -21,7 +21,7 @@ struct Settings {
     int order = 3;                ///< highest multipole: 1 mass alone, 2 quadrupole, 3 octupole
     bool direct = false;          ///< every pair, for reference: work grows as the square of the particles
     double softening_length = 0;  ///< in place of every smoothing length [m]; 0: the smoothing lengths
-    double step_factor = 0.5;     ///< C in dt = C sqrt(h/|g|)
+    double step_factor = 0.25;    ///< C in dt = C sqrt(h/|g|)
     Precision precision = Precision::single_precision;
     int leaf_size = 32;   ///< most particles in a leaf of the tree
     int group_size = 64;  ///< most particles that share a list of interactions
