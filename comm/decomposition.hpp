@@ -36,6 +36,7 @@ class Decomposition {
     std::uint64_t total_particles() const { return expected_.count; }
 
     const CellTable& table() const { return table_; }
+    const Partition& partition() const { return partition_; }
     /// Own cells in the order of the table.
     std::span<const CellEntry> own_cells() const { return own_cells_; }
     Halo& halo() { return halo_; }

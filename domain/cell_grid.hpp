@@ -54,10 +54,15 @@ class CellGrid {
     /// Number of cells along a closed axis, 0 along an open one.
     int cell_count(int axis) const { return count_[static_cast<std::size_t>(axis)]; }
 
+    /// Coordinate along one axis counted in cells, not limited to the outermost ones.
+    double in_cells(int axis, double coordinate) const {
+        const auto a = static_cast<std::size_t>(axis);
+        return (coordinate - origin_[a]) * inverse_size_[a];
+    }
     /// Cell index of a coordinate along one axis.
     int index_along(int axis, double coordinate) const {
         const auto a = static_cast<std::size_t>(axis);
-        const double index = (coordinate - origin_[a]) * inverse_size_[a];
+        const double index = in_cells(axis, coordinate);
         const int lowest = count_[a] > 0 ? 0 : -cell_limit;
         const int highest = count_[a] > 0 ? count_[a] - 1 : cell_limit;
         if (!(index > lowest)) return lowest;

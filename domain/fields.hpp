@@ -132,6 +132,10 @@ inline constexpr Field<double> specific_power{
     state,
     owner,
     "work of the pair forces on the particle per mass and time, kinetic and internal together"};
+inline constexpr Field<double> gravity_acceleration{
+    "gravity_acceleration", "m s-2", vector, state, owner, "acceleration of gravity at the last evaluation"};
+inline constexpr Field<double> gravity_potential{
+    "gravity_potential", "J kg-1", scalar, work, owner, "potential of the other particles' gravity"};
 inline constexpr Field<double> viscous_speed{
     "viscous_speed",
     "m s-1",

@@ -55,11 +55,21 @@ Partition::Partition(int block_shift, std::span<const Block> blocks, std::vector
     for (const Block& block : blocks) keys_.push_back(block.key);
 }
 
-int Partition::owner_of_block(std::uint64_t block_key) const {
-    if (keys_.empty()) return 0;
+std::size_t Partition::place_of(std::uint64_t block_key) const {
     const auto at = std::lower_bound(keys_.begin(), keys_.end(), block_key);
-    const auto k = at == keys_.end() ? keys_.size() - 1 : static_cast<std::size_t>(at - keys_.begin());
-    return owners_[k];
+    return at == keys_.end() ? keys_.size() - 1 : static_cast<std::size_t>(at - keys_.begin());
+}
+
+int Partition::owner_of_block(std::uint64_t block_key) const {
+    return keys_.empty() ? 0 : owners_[place_of(block_key)];
+}
+
+int Partition::sole_owner(std::uint64_t first_key, std::uint64_t last_key) const {
+    if (keys_.empty()) return 0;
+    const std::size_t first = place_of(first_key), last = place_of(last_key);
+    for (std::size_t k = first; k < last; ++k)
+        if (owners_[k + 1] != owners_[first]) return -1;
+    return owners_[first];
 }
 
 namespace {

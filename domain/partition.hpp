@@ -38,9 +38,13 @@ class Partition {
     /// Owner of a block. A block that held no particles when the partition was made belongs to the owner
     /// of the next known block in Morton order, which is near it.
     int owner_of_block(std::uint64_t block_key) const;
+    /// Owner of all blocks from one key to another, inclusive; -1 if there are several.
+    int sole_owner(std::uint64_t first_key, std::uint64_t last_key) const;
     int owner_of(const Cell& cell) const { return owner_of_block(block_key_of(cell, block_shift_)); }
 
   private:
+    std::size_t place_of(std::uint64_t block_key) const;
+
     int block_shift_ = 2;
     std::vector<std::uint64_t> keys_;
     std::vector<int> owners_;

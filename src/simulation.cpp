@@ -43,6 +43,10 @@ void add_fields(ParticleSet& particles, const Setup& setup) {
     }
     if (sph.formulation == sph::Formulation::standard) particles.add(field::viscous_speed);
     if (sph.uses(sph::Interpolation::quintic)) particles.add(field::volume_curvature);
+    if (setup.gravity) {
+        particles.add(field::gravity_acceleration);
+        particles.add(field::gravity_potential);
+    }
     if (has_strength(setup)) {
         particles.add(field::deviatoric_stress);
         particles.add(field::predicted_stress);
@@ -59,6 +63,7 @@ Simulation::Simulation(const Communicator& comm, Setup setup, ParticleSet partic
       particles_(std::move(particles)),
       decomposition_(comm, setup_.partition) {
     for (const Material& material : setup_.materials) shear_moduli_.push_back(material.shear_modulus);
+    if (setup_.gravity) gravity_.emplace(comm_, *setup_.gravity, setup_.sph);
     decomposition_.expect(particles_);
     const auto h = std::as_const(particles_).own(field::smoothing_length);
     const auto [least, greatest] = std::minmax_element(h.begin(), h.end());
@@ -191,6 +196,10 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
             {&field::position, &field::mass, &field::smoothing_length, &field::predicted_velocity,
              &field::predicted_density, &field::pressure, &field::sound_speed, &field::predicted_stress},
             [&](Cells cells) { sph::standard_pass(particles_, table, cells, settings, pass_count_); });
+    if (gravity_) {
+        phases_.enter(Phase::gravity);
+        gravity_->evaluate(particles_, *grid_, decomposition_, pass_count_.work_of_cell);
+    }
     hold_bodies();
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
@@ -241,6 +250,10 @@ void Simulation::hold_bodies() {
         double *a = particles_.data(field::acceleration, axis), *v = particles_.data(field::velocity, axis);
         for (std::size_t i = 0; i < particles_.size(); ++i)
             if (setup_.held[body[i]]) a[i] = v[i] = 0;
+        if (!gravity_) continue;
+        double* g = particles_.data(field::gravity_acceleration, axis);
+        for (std::size_t i = 0; i < particles_.size(); ++i)
+            if (setup_.held[body[i]]) g[i] = 0;
     }
     double* power = particles_.data(field::specific_power);
     for (std::size_t i = 0; i < particles_.size(); ++i)
@@ -250,6 +263,10 @@ void Simulation::hold_bodies() {
 void Simulation::choose_time_step() {
     limit_ = sph::stable_time_step(particles_, shear_moduli_, setup_.sph);
     if (damage_limit_ < limit_.time_step) limit_ = {damage_limit_, limit_.id, "damage growth"};
+    if (gravity_) {
+        const sph::StepLimit by_gravity = gravity::stable_time_step(particles_, *setup_.gravity);
+        if (by_gravity.time_step < limit_.time_step) limit_ = by_gravity;
+    }
     phases_.enter(Phase::wait);
     time_step_ = comm_.all_min(limit_.time_step);
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "comm/decomposition.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
+#include "physics/gravity/gravity.hpp"
 #include "physics/solid/material.hpp"
 #include "physics/sph/motion.hpp"
 #include "physics/sph/passes.hpp"
@@ -22,8 +24,9 @@ namespace talus {
 struct Setup {
     Box box;
     sph::Settings sph;
-    std::vector<Material> materials;  ///< one a body, in order
-    std::vector<bool> held;           ///< one a body: its particles never move; empty: none
+    std::optional<gravity::Settings> gravity;  ///< none: no self-gravity
+    std::vector<Material> materials;           ///< one a body, in order
+    std::vector<bool> held;                    ///< one a body: its particles never move; empty: none
     PartitionMethod partition = PartitionMethod::metis;
     double largest_damage_step = 0.1;  ///< D^(1/3) may grow by this much a step [1]
     double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
@@ -39,6 +42,11 @@ struct Totals {
     std::array<double, 3> momentum, angular_momentum;
     double greatest_speed, least_density, greatest_density, least_pressure, greatest_pressure, mean_damage;
     std::uint64_t particles;
+    double potential_energy = 0;  ///< of self-gravity [J]
+    double gravity_drift =
+        0;  ///< sum of all gravity forces over the sum of their sizes, of rounding and tree [1]
+
+    double total_energy() const { return kinetic_energy + internal_energy + potential_energy; }
 };
 
 /// One particle set under SPH: solids and gases of one or several bodies.
@@ -69,10 +77,13 @@ class Simulation {
     std::uint64_t total_particles() const { return decomposition_.total_particles(); }
     /// Pairs evaluated by this rank in the force pass since the start.
     std::uint64_t pairs() const { return pairs_; }
+    /// What self-gravity did on this rank since the start; nullptr: there is none.
+    const gravity::Counts* gravity_counts() const { return gravity_ ? &gravity_->counts() : nullptr; }
     Phases& phases() { return phases_; }
     /// Starts counting pairs and time anew.
     void reset_counters() {
         pairs_ = 0;
+        if (gravity_) gravity_->reset_counts();
         phases_ = {};
     }
     /// What set the next time step, as far as this rank knows.
@@ -98,6 +109,7 @@ class Simulation {
     std::vector<double> shear_moduli_;
     ParticleSet particles_;
     Decomposition decomposition_;
+    std::optional<gravity::Gravity> gravity_;
     std::unique_ptr<CellGrid> grid_;
     double grid_radius_ = 0;
     double time_ = 0, time_step_ = 0;

@@ -9,7 +9,24 @@
 namespace talus {
 
 Totals Simulation::totals() const {
-    enum Sum { mass, kinetic, internal, px, py, pz, lx, ly, lz, damage_sum, sum_count };
+    enum Sum {
+        mass,
+        kinetic,
+        internal,
+        px,
+        py,
+        pz,
+        lx,
+        ly,
+        lz,
+        damage_sum,
+        potential,
+        gx,
+        gy,
+        gz,
+        gravity_size,
+        sum_count
+    };
     std::vector<ExactSum> sums(sum_count);
     std::array<double, 5> extremes{};  // maxima; minima with their sign changed
     extremes.fill(-std::numeric_limits<double>::infinity());
@@ -19,6 +36,7 @@ Totals Simulation::totals() const {
     const double* density = particles_.data(field::predicted_density);
     const double* pressure = particles_.data(field::pressure);
     const double* damage = particles_.has(field::damage) ? particles_.data(field::damage) : nullptr;
+    const double* phi = gravity_ ? particles_.data(field::gravity_potential) : nullptr;
     for (std::size_t i = 0; i < particles_.size(); ++i) {
         std::array<double, 3> x{}, p{};
         double speed2 = 0;
@@ -38,13 +56,23 @@ Totals Simulation::totals() const {
         sums[ly].add(x[2] * p[0] - x[0] * p[2]);
         sums[lz].add(x[0] * p[1] - x[1] * p[0]);
         if (damage) sums[damage_sum].add(m[i] * damage[i]);
+        if (phi) {
+            sums[potential].add(0.5 * m[i] * phi[i]);
+            double size2 = 0;
+            for (int a = 0; a < dimension; ++a) {
+                const double force = m[i] * particles_.data(field::gravity_acceleration, a)[i];
+                sums[static_cast<std::size_t>(gx + a)].add(force);
+                size2 += force * force;
+            }
+            sums[gravity_size].add(std::sqrt(size2));
+        }
         extremes = {std::max(extremes[0], std::sqrt(speed2)), std::max(extremes[1], -density[i]),
                     std::max(extremes[2], density[i]), std::max(extremes[3], -pressure[i]),
                     std::max(extremes[4], pressure[i])};
     }
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(extremes));
-    const double total_mass = sums[mass].value();
+    const double total_mass = sums[mass].value(), gravity = sums[gravity_size].value();
     return {.mass = total_mass,
             .kinetic_energy = sums[kinetic].value(),
             .internal_energy = sums[internal].value(),
@@ -56,7 +84,10 @@ Totals Simulation::totals() const {
             .least_pressure = -extremes[3],
             .greatest_pressure = extremes[4],
             .mean_damage = sums[damage_sum].value() / total_mass,
-            .particles = total_particles()};
+            .particles = total_particles(),
+            .potential_energy = sums[potential].value(),
+            .gravity_drift =
+                gravity > 0 ? std::hypot(sums[gx].value(), sums[gy].value(), sums[gz].value()) / gravity : 0};
 }
 
 }  // namespace talus

@@ -12,12 +12,13 @@ namespace talus::sph {
 
 namespace {
 
-/// Specific internal energy after `time`, the velocity before that being v: total work less the kinetic part.
+/// Specific internal energy after `time`, the velocity before that being v: total work of the pair forces
+/// less the kinetic part. `a` is the acceleration by them, `total` that by all forces.
 template <int D>
 double advanced_energy(double energy, double power, const std::array<double, D>& v,
-                       const std::array<double, D>& a, double time) {
+                       const std::array<double, D>& a, const std::array<double, D>& total, double time) {
     double kinetic = 0;
-    for (int d = 0; d < D; ++d) kinetic += a[d] * (v[d] + 0.5 * time * a[d]);
+    for (int d = 0; d < D; ++d) kinetic += a[d] * (v[d] + 0.5 * time * total[d]);
     return energy + time * (power - kinetic);
 }
 
@@ -51,14 +52,18 @@ void advance(ParticleSet& particles, std::span<const double> shear_moduli, doubl
                  *energy = particles.data(field::internal_energy);
     const auto new_v = components_to_write<D>(particles, to_velocity);
     double* new_energy = particles.data(to_energy);
+    const bool has_gravity = particles.has(field::gravity_acceleration);
+    std::array<const double*, D> g{};
+    if (has_gravity) g = components<D>(particles, field::gravity_acceleration);
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        std::array<double, D> v_i, a_i;
+        std::array<double, D> v_i, a_i, total_i;
         for (int d = 0; d < D; ++d) {
             v_i[d] = v[d][i];
             a_i[d] = a[d][i];
+            total_i[d] = has_gravity ? a_i[d] + g[d][i] : a_i[d];
         }
-        new_energy[i] = advanced_energy<D>(energy[i], power[i], v_i, a_i, time);
-        for (int d = 0; d < D; ++d) new_v[d][i] = v_i[d] + time * a_i[d];
+        new_energy[i] = advanced_energy<D>(energy[i], power[i], v_i, a_i, total_i, time);
+        for (int d = 0; d < D; ++d) new_v[d][i] = v_i[d] + time * total_i[d];
     }
 
     if (!particles.has(field::density)) return;

@@ -20,26 +20,33 @@ namespace talus {
 
 namespace {
 
-const std::vector<CsvColumn> diagnostics_columns = {
-    {"time", "s"},
-    {"time_step", "s"},
-    {"mass", "kg"},
-    {"kinetic_energy", "J"},
-    {"internal_energy", "J"},
-    {"total_energy", "J"},
-    {"momentum_x", "kg m s-1"},
-    {"momentum_y", "kg m s-1"},
-    {"momentum_z", "kg m s-1"},
-    {"angular_momentum_x", "kg m2 s-1"},
-    {"angular_momentum_y", "kg m2 s-1"},
-    {"angular_momentum_z", "kg m2 s-1"},
-    {"greatest_speed", "m s-1"},
-    {"least_density", "kg m-3"},
-    {"greatest_density", "kg m-3"},
-    {"least_pressure", "Pa"},
-    {"greatest_pressure", "Pa"},
-    {"mean_damage", "1"},
-};
+std::vector<CsvColumn> diagnostics_columns(const Setup& setup) {
+    std::vector<CsvColumn> columns = {
+        {"time", "s"},
+        {"time_step", "s"},
+        {"mass", "kg"},
+        {"kinetic_energy", "J"},
+        {"internal_energy", "J"},
+        {"total_energy", "J"},
+        {"momentum_x", "kg m s-1"},
+        {"momentum_y", "kg m s-1"},
+        {"momentum_z", "kg m s-1"},
+        {"angular_momentum_x", "kg m2 s-1"},
+        {"angular_momentum_y", "kg m2 s-1"},
+        {"angular_momentum_z", "kg m2 s-1"},
+        {"greatest_speed", "m s-1"},
+        {"least_density", "kg m-3"},
+        {"greatest_density", "kg m-3"},
+        {"least_pressure", "Pa"},
+        {"greatest_pressure", "Pa"},
+        {"mean_damage", "1"},
+    };
+    if (setup.gravity) {
+        columns.push_back({"potential_energy", "J"});
+        columns.push_back({"gravity_drift", "1"});
+    }
+    return columns;
+}
 
 /// Whether an output that is due every `interval` fell due between two times; every call if it is 0.
 bool fell_due(double before, double now, double interval) {
@@ -134,7 +141,7 @@ void Recorder::begin(Simulation& simulation, double end_time) {
     if (comm_.is_root())
         for (const std::string& warning : warnings(setup_)) files_->log->warn("note: {}", warning);
     files_->diagnostics = std::make_unique<CsvWriter>(
-        comm_, folder_ / "diagnostics.csv", diagnostics_columns,
+        comm_, folder_ / "diagnostics.csv", diagnostics_columns(setup_.simulation),
         is_new ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));
     if (is_new) {
         write_diagnostics(simulation);
@@ -232,13 +239,13 @@ void Recorder::write_analysis(const Simulation& simulation) {
 
 void Recorder::write_diagnostics(Simulation& simulation) {
     const Totals t = simulation.totals();
-    const std::vector<double> row = {
-        simulation.time(),     simulation.time_step(), t.mass,
-        t.kinetic_energy,      t.internal_energy,      t.kinetic_energy + t.internal_energy,
-        t.momentum[0],         t.momentum[1],          t.momentum[2],
-        t.angular_momentum[0], t.angular_momentum[1],  t.angular_momentum[2],
-        t.greatest_speed,      t.least_density,        t.greatest_density,
-        t.least_pressure,      t.greatest_pressure,    t.mean_damage};
+    std::vector<double> row = {simulation.time(),     simulation.time_step(), t.mass,
+                               t.kinetic_energy,      t.internal_energy,      t.total_energy(),
+                               t.momentum[0],         t.momentum[1],          t.momentum[2],
+                               t.angular_momentum[0], t.angular_momentum[1],  t.angular_momentum[2],
+                               t.greatest_speed,      t.least_density,        t.greatest_density,
+                               t.least_pressure,      t.greatest_pressure,    t.mean_damage};
+    if (simulation.gravity_counts()) row.insert(row.end(), {t.potential_energy, t.gravity_drift});
     if (simulation.step_count() == 0) first_energy_ = row[5];
     files_->diagnostics->write(simulation.step_count(), row);
 }
@@ -249,6 +256,10 @@ void Recorder::write_performance(const Simulation& simulation, const PhaseTimer&
     const std::uint64_t memory = comm_.all_sum(peak_memory());
     const std::uint64_t messages = comm_.all_max(simulation.decomposition().halo().messages_sent());
     const std::uint64_t bytes = comm_.all_max(simulation.decomposition().halo().bytes_sent());
+    std::string gravity;
+    if (const gravity::Counts* counts = simulation.gravity_counts())
+        gravity = fmt::format("\"gravity_interactions\": {}, \"gravity_bytes_of_a_rank\": {}, ",
+                              comm_.all_sum(counts->interactions()), comm_.all_max(counts->bytes_sent));
     agree_on_root(comm_, [&] {
         std::string phases;
         for (const auto& row : rows)
@@ -257,9 +268,9 @@ void Recorder::write_performance(const Simulation& simulation, const PhaseTimer&
         file << fmt::format(
             "{{\"ranks\": {}, \"particles\": {}, \"steps\": {}, \"seconds\": {:.6g}, \"pairs\": {}, "
             "\"field_bytes_per_particle\": {}, \"peak_memory_bytes\": {}, \"messages_of_a_rank\": {}, "
-            "\"message_bytes_of_a_rank\": {}, \"imbalance\": {:.4g}, \"phase_seconds\": {{{}}}}}\n",
+            "\"message_bytes_of_a_rank\": {}, {}\"imbalance\": {:.4g}, \"phase_seconds\": {{{}}}}}\n",
             comm_.size(), simulation.total_particles(), simulation.step_count() - first_step_, seconds, pairs,
-            simulation.particles().bytes_per_particle(), memory, messages, bytes,
+            simulation.particles().bytes_per_particle(), memory, messages, bytes, gravity,
             simulation.decomposition().measured_imbalance(), phases);
         file.close();
         if (!file)
@@ -275,6 +286,8 @@ void Recorder::print_summary(Simulation& simulation) {
     const std::string table = timer.report(comm_, seconds);
     const std::uint64_t pairs = comm_.all_sum(simulation.pairs());
     const Totals totals = simulation.totals();
+    const gravity::Counts* gravity = simulation.gravity_counts();
+    const std::uint64_t interactions = gravity ? comm_.all_sum(gravity->interactions()) : 0;
     write_performance(simulation, timer, seconds, pairs);
     if (!comm_.is_root()) return;
     const auto steps = static_cast<double>(simulation.step_count() - first_step_);
@@ -284,10 +297,14 @@ void Recorder::print_summary(Simulation& simulation) {
         simulation.step_count(), simulation.time(), seconds, updates / seconds,
         updates > 0 ? static_cast<double>(pairs) / updates : 0.0);
     if (first_energy_ != 0) {
-        const double energy = totals.kinetic_energy + totals.internal_energy;
+        const double energy = totals.total_energy();
         files_->log->info("total energy {:.9g} J, changed by {:.1e} of its first value", energy,
                           energy / first_energy_ - 1);
     }
+    if (gravity)
+        files_->log->info(
+            "gravity: {:.1f} interactions per particle and step; its forces add up to {:.1e} of their sizes",
+            updates > 0 ? static_cast<double>(interactions) / updates : 0.0, totals.gravity_drift);
     files_->log->info("decomposition cut {} times, imbalance of work {:.3f}\n{}",
                       simulation.decomposition().rebalance_count(),
                       simulation.decomposition().measured_imbalance(), table);

@@ -6,14 +6,14 @@
 
 #include "comm/communicator.hpp"
 #include "domain/particles.hpp"
+#include "physics/gravity/settings.hpp"
 #include "physics/solid/material.hpp"
 #include "physics/sph/settings.hpp"
 #include "src/setup/packing.hpp"
 
 namespace talus {
 
-/// Of gravitation, CODATA 2018 [m3 kg-1 s-2].
-inline constexpr double newton_constant = 6.67430e-11;
+using gravity::newton_constant;
 
 /// Added to the uniform velocity of a body at the start.
 struct SineVelocity {

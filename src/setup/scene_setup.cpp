@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "src/setup/body_reader.hpp"
+#include "src/setup/gravity_reader.hpp"
 #include "src/setup/impact_reader.hpp"
 #include "src/setup/material_reader.hpp"
 
@@ -65,8 +67,10 @@ void read_interpolation(const Section& table, int dimension, sph::Settings& sett
     if (name == "quintic") settings.compressed = settings.stretched = sph::Interpolation::quintic;
 }
 
-/// `materials`: those of the bodies, which decide some defaults.
-sph::Settings read_sph(const Section& table, int dimension, const std::vector<Material>& materials) {
+/// `materials`: those of the bodies, which decide some defaults. `widest_spacing`: of the bodies in an open
+/// box, where particles may fly off alone and h would grow without bound; 0 in a closed one.
+sph::Settings read_sph(const Section& table, int dimension, const std::vector<Material>& materials,
+                       double widest_spacing) {
     sph::Settings settings;
     bool all_gas = !materials.empty(), any_strength = false;
     double shock_slope = 1;
@@ -112,8 +116,10 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
     settings.eta = table.number("eta", "1", eta, {0.5, 5});
     if (settings.variable_smoothing_length) {
         settings.smoothing_widening = table.number("smoothing_widening", "1", 1.0, {1, 5});
-        if (table.has("largest_smoothing_length"))
-            settings.largest_smoothing_length = table.number("largest_smoothing_length", "m", {}, positive);
+        constexpr double most_growth = 4;  // to 1/64 of the first density in 3D
+        if (widest_spacing > 0 || table.has("largest_smoothing_length"))
+            settings.largest_smoothing_length = table.number(
+                "largest_smoothing_length", "m", most_growth * settings.eta * widest_spacing, positive);
     }
     settings.courant = table.number("courant", "1", courant, {0, 2, true});
     return settings;
@@ -202,6 +208,16 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     if (!scene.faulty()) refuse_overlaps(tables, setup);
 }
 
+/// Widest spacing of the bodies if the box is open along any axis, else 0.
+double widest_open_spacing(const SceneSetup& setup) {
+    const Box& box = setup.simulation.box;
+    const auto end = box.boundary.begin() + box.dimension;
+    double widest = 0;
+    if (std::find(box.boundary.begin(), end, Boundary::open) != end)
+        for (const Body& body : setup.bodies) widest = std::max(widest, body.spacing);
+    return widest;
+}
+
 /// Solids in contact bear neither tension nor shear across it, unless they are said to be bonded.
 void read_contacts(const Section& root, SceneSetup& setup) {
     bool solid = false;
@@ -220,10 +236,11 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
     const int dimension = static_cast<int>(root.integer("dimension", 3, 1, 3));
     setup.simulation.box = read_box(root.section("box"), dimension);
-    if (const Section gravity = root.section("gravity"); gravity.exists())
-        setup.gravitational_constant = gravity.number("constant", "m3 kg-1 s-2", newton_constant, positive);
+    setup.simulation.gravity = read_gravity(root, setup.simulation.box);
+    if (setup.simulation.gravity) setup.gravitational_constant = setup.simulation.gravity->constant;
     read_bodies(comm, scene, setup);
-    setup.simulation.sph = read_sph(root.section("sph"), dimension, setup.simulation.materials);
+    setup.simulation.sph =
+        read_sph(root.section("sph"), dimension, setup.simulation.materials, widest_open_spacing(setup));
     read_contacts(root, setup);
     const Section run = root.section("run");
     setup.output.end_time = run.number("end_time", "s", {}, positive);

@@ -67,6 +67,14 @@ class BadInput(Case):
         done = talus("check", SCENE, "--quick", "--set", "sph.formulation=godunof")
         self.assert_fails(done, 2, "--set sph.formulation", "godunof", "standard")
 
+    def test_gravity_where_it_cannot_be(self):
+        done = talus("check", RUNS / "sod_tube", "--quick", "--set", "gravity.theta=2", "--set", "gravity.order=4")
+        self.assert_fails(done, 2, "gravity .*dimension = 3", "gravity .*open", r"gravity\.theta.*0\.95",
+                          r"gravity\.order.*3")
+        done = talus("check", RUNS / "rotating_sphere", "--quick", "--set", "gravity.direct=true",
+                     "--set", "gravity.theta=0.5")
+        self.assert_fails(done, 2, r"gravity\.theta")
+
     def test_missing_files(self):
         self.assert_fails(talus("run", self.folder / "nowhere"), 2, "nowhere")
         done = talus("run", SCENE, "--quick", "--set", "body[0].material=cheese", "--out", self.out)

@@ -159,12 +159,12 @@ TEST_P(SameBits, AfterInterruption) {
 }
 
 std::string name_of(const testing::TestParamInfo<SmallScene (*)()>& scene) {
-    constexpr const char* names[] = {"Rock2D", "Gas3D", "Walls2D", "Wave1D"};
+    constexpr const char* names[] = {"Rock2D", "Gas3D", "Gravity3D", "Walls2D", "Wave1D"};
     return names[scene.index];
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, SameBits,
-                         testing::Values(rock_impact_2d, periodic_gas_3d, gas_between_walls_2d,
-                                         standing_wave_1d),
+                         testing::Values(rock_impact_2d, periodic_gas_3d, collapsing_gas_3d,
+                                         gas_between_walls_2d, standing_wave_1d),
                          name_of);
 
 }  // namespace

@@ -34,10 +34,7 @@ class ById {
     std::vector<std::size_t> order_;
 };
 
-double total_energy(const Simulation& simulation) {
-    const Totals totals = simulation.totals();
-    return totals.kinetic_energy + totals.internal_energy;
-}
+double total_energy(const Simulation& simulation) { return simulation.totals().total_energy(); }
 
 GasResult gathered(const Communicator& comm, const Simulation& simulation) {
     const ParticleSet& particles = simulation.particles();

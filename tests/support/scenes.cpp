@@ -54,6 +54,17 @@ void fill_gas(ParticleSet& particles, double spacing, double noise_of_velocity, 
     }
 }
 
+sph::Settings standard_sph() {
+    sph::Settings settings;
+    settings.formulation = sph::Formulation::standard;
+    settings.kernel = sph::KernelKind::wendland_c2;
+    settings.density = sph::DensityMethod::summation;
+    settings.variable_smoothing_length = true;
+    settings.eta = 1.3;
+    settings.courant = 0.3;
+    return settings;
+}
+
 Material ideal_gas() { return {.name = "gas", .eos = IdealGas{}, .reference_density = 1}; }
 
 }  // namespace
@@ -105,18 +116,33 @@ SmallScene periodic_gas_3d() {
     setup.box.dimension = 3;
     setup.box.upper = {1, 1, 1.2};
     setup.box.boundary.fill(Boundary::periodic);
-    setup.sph.formulation = sph::Formulation::standard;
-    setup.sph.kernel = sph::KernelKind::wendland_c2;
-    setup.sph.density = sph::DensityMethod::summation;
-    setup.sph.variable_smoothing_length = true;
-    setup.sph.eta = 1.3;
-    setup.sph.courant = 0.3;
+    setup.sph = standard_sph();
     setup.materials = {ideal_gas()};
     ParticleSet particles("gas", 3);
     add_fields(particles, setup);
     append(particles, {{10, 10, 12}, {}, 0.1});
     fill_gas(particles, 0.1, 3.0, 0.13);
     return {"periodic gas 3D", setup, std::move(particles)};
+}
+
+SmallScene collapsing_gas_3d() {
+    Setup setup;
+    setup.box.dimension = 3;
+    setup.sph = standard_sph();
+    setup.sph.largest_smoothing_length = 0.4;
+    setup.gravity.emplace();
+    setup.gravity->constant = 40;  // collapses in a few sound crossings
+    setup.gravity->opening = gravity::Opening::relative;
+    setup.gravity->accuracy = 1e-3;
+    setup.materials = {ideal_gas()};
+    ParticleSet particles("gas", 3);
+    add_fields(particles, setup);
+    append(particles, {{10, 10, 10}, {}, 0.1});
+    fill_gas(particles, 0.1, 1.0, 0.13);
+    for (std::size_t i = 0; i < particles.size(); i += 37)  // some that escaped
+        particles.data(field::position, static_cast<int>(i % 3))[i] +=
+            std::pow(2.0, static_cast<double>(i % 12));
+    return {"collapsing gas 3D", setup, std::move(particles)};
 }
 
 SmallScene gas_between_walls_2d() {

@@ -15,6 +15,7 @@ struct SmallScene {
 SmallScene rock_impact_2d();        ///< Godunov, strength, fracture, two bodies, open box
 SmallScene periodic_gas_3d();       ///< standard SPH, Wendland C2, variable h, periodic box
 SmallScene gas_between_walls_2d();  ///< Godunov, variable h, reflecting x, periodic y
+SmallScene collapsing_gas_3d();     ///< self-gravity, standard SPH, variable h, far particles, open box
 SmallScene standing_wave_1d();      ///< Godunov with quintic interpolation, periodic
 
 }  // namespace talus::test

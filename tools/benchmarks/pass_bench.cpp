@@ -4,23 +4,16 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 
 #include "comm/environment.hpp"
 #include "domain/partners.hpp"
 #include "physics/sph/pass_support.hpp"
 #include "tests/support/sph_sample.hpp"
+#include "tools/benchmarks/processor_time.hpp"
 
 using namespace talus;
 
 namespace {
-
-/// Processor time of this thread, which other programs on the machine disturb less than wall time.
-double processor_time() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double seconds(auto&& work) {
     const double start = processor_time();

@@ -1,0 +1,33 @@
+#include "src/setup/gravity_reader.hpp"
+
+namespace talus {
+
+std::optional<gravity::Settings> read_gravity(const Section& root, const Box& box) {
+    const Section table = root.section("gravity");
+    if (!table.exists()) return {};
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (box.dimension != 3) table.error("", "self-gravity needs dimension = 3");
+    for (const Boundary boundary : box.boundary)
+        if (boundary != Boundary::open) {
+            table.error("", "self-gravity needs box.boundaries that are all \"open\"");
+            break;
+        }
+    gravity::Settings settings;
+    settings.constant = table.number("constant", "m3 kg-1 s-2", settings.constant, {0, infinity, true});
+    settings.direct = table.flag("direct", false);
+    if (table.has("softening_length"))
+        settings.softening_length = table.number("softening_length", "m", {}, {0, infinity, true});
+    settings.step_factor = table.number("step_factor", "1", settings.step_factor, {0, 2, true});
+    if (settings.direct) return settings;
+    settings.theta = table.number("theta", "1", settings.theta, {0, 0.95, true});
+    if (table.choice("opening", {"geometric", "relative"}, "geometric") == "relative") {
+        settings.opening = gravity::Opening::relative;
+        settings.accuracy = table.number("accuracy", "1", settings.accuracy, {0, 1, true});
+    }
+    settings.order = static_cast<int>(table.integer("order", settings.order, 1, 3));
+    if (table.choice("precision", {"single", "double"}, "single") == "double")
+        settings.precision = gravity::Precision::double_precision;
+    return settings;
+}
+
+}  // namespace talus
