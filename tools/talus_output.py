@@ -55,7 +55,7 @@ class Snapshot:
             volume = self["mass"] / np.maximum(self["density"], 1e-300)
             spacing = volume ** (1.0 / self.dimension)
         if "smoothing_length" in self:
-            spacing = np.minimum(spacing, self["smoothing_length"])
+            spacing = np.minimum(spacing, 1.4 * self["smoothing_length"])  # what expands stays as large
         if not np.isfinite(spacing).all():
             extent = np.ptp(self["position"][:, : self.dimension], axis=0)
             spacing[:] = (np.prod(extent[extent > 0]) / self.size) ** (1.0 / max(1, (extent > 0).sum()))
