@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <span>
 #include <vector>
 
@@ -60,6 +61,35 @@ inline double one_flaw_failure_stress(const PulledRock& rock, double threshold, 
     return rock.young_modulus * crossing * (start + low) * (1 - low * low * low);
 }
 
+/// Every flaw of a particle by its threshold, in order.
+struct ListedFlaws {
+    std::vector<double> thresholds;
+    double count = 0;
+
+    double open(double strain) const {
+        return static_cast<double>(std::upper_bound(thresholds.begin(), thresholds.end(), strain) -
+                                   thresholds.begin());
+    }
+};
+
+/// Flaws as W. Benz, E. Asphaug, Icarus 107 (1994) 98, section 2.3, deal them out: the j-th of a body has the
+/// threshold (j/(k V))^(1/m), V the body's volume, and goes to a particle drawn at random, until each has
+/// one.
+inline std::vector<ListedFlaws> deal_flaws(const PulledRock& rock, std::size_t particles, unsigned seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_int_distribution<std::size_t> any(0, particles - 1);
+    const double body_volume = rock.volume * static_cast<double>(particles);
+    std::vector<ListedFlaws> dealt(particles);
+    std::size_t without = particles;
+    for (double j = 1; without > 0; ++j) {
+        ListedFlaws& to = dealt[any(random)];
+        without -= to.thresholds.empty() ? 1 : 0;
+        to.thresholds.push_back(std::pow(j / (rock.weibull_k * body_volume), 1 / rock.weibull_m));
+        to.count += 1;
+    }
+    return dealt;
+}
+
 /// One point of a stress-strain curve.
 struct PullPoint {
     double strain, stress, damage;  ///< stress [Pa] and damage are means over the particles
@@ -67,8 +97,9 @@ struct PullPoint {
 
 /// Stress and damage of given particles pulled together, up to `last_strain` in `steps` steps, by the
 /// midpoint rule and with D bounded by (open/count)^(1/3) if `bounded`.
-inline std::vector<PullPoint> pull(const PulledRock& rock, std::span<const Flaws> particles, double rate,
-                                   double last_strain, int steps, bool bounded = true) {
+template <class Particle>
+std::vector<PullPoint> pull(const PulledRock& rock, std::span<const Particle> particles, double rate,
+                            double last_strain, int steps, bool bounded = true) {
     std::vector<double> damage(particles.size(), 0.0);
     std::vector<PullPoint> curve;
     const double step = last_strain / steps;

@@ -309,8 +309,8 @@ TEST(GradyKipp, SampledFlawsBreakAtItsStress) {
     for (const double rate : {100.0, 300.0, 1000.0}) {
         const double theory = test::many_flaw_failure_stress(rock, rate);
         const double last = 3 * theory / rock.young_modulus;
-        const double bounded = test::failure_stress(test::pull(rock, particles, rate, last, 1500));
-        const double free = test::failure_stress(test::pull(rock, particles, rate, last, 1500, false));
+        const double bounded = test::failure_stress(test::pull<Flaws>(rock, particles, rate, last, 1500));
+        const double free = test::failure_stress(test::pull<Flaws>(rock, particles, rate, last, 1500, false));
         RecordProperty("stress_over_theory_at_rate_" + std::to_string(static_cast<int>(rate)),
                        std::to_string(bounded / theory) + " bounded, " + std::to_string(free / theory) +
                            " free, " + std::to_string(theory / 1e6) + " MPa, flaws open " +
@@ -326,7 +326,7 @@ TEST(GradyKipp, OneFlawBreaksByItsCrackAlone) {
     for (const double rate : {1.0, 100.0, 1e4}) {
         const double theory = test::one_flaw_failure_stress(rock, static_cast<double>(flaw.threshold), rate);
         const double last = 2 * theory / rock.young_modulus;
-        const double pulled = test::failure_stress(test::pull(rock, {&flaw, 1}, rate, last, 200000));
+        const double pulled = test::failure_stress(test::pull<Flaws>(rock, {&flaw, 1}, rate, last, 200000));
         EXPECT_NEAR(pulled / theory, 1, 1e-4) << rate;
         EXPECT_GE(theory, 1e-3 * rock.young_modulus);
     }
@@ -337,7 +337,7 @@ TEST(GradyKipp, GrowDamageFollowsTheReference) {
     const Flaws flaws{.threshold = 1e-3f, .exponent = 6, .count = 20};
     const double rate = 100, last = 4e-3;
     constexpr int steps = 2000;
-    const auto curve = test::pull(rock, {&flaws, 1}, rate, last, steps);
+    const auto curve = test::pull<Flaws>(rock, {&flaws, 1}, rate, last, steps);
     Pulled particle(1, flaws, 0);
     particle.radius[0] = rock.radius / 2;  // the factor is 2
     for (int s = 0; s < steps; ++s) {
