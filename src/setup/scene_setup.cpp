@@ -218,13 +218,19 @@ double widest_open_spacing(const SceneSetup& setup) {
     return widest;
 }
 
-/// Solids in contact bear neither tension nor shear across it, unless they are said to be bonded.
+/// Solids in contact bear neither tension nor shear across it, unless they are said to be bonded; standard
+/// SPH knows bonded ones alone.
 void read_contacts(const Section& root, SceneSetup& setup) {
     bool solid = false;
     for (const Material& material : setup.simulation.materials) solid |= material.shear_modulus > 0;
     if (!solid || setup.bodies.size() < 2) return;
-    setup.simulation.sph.several_bodies =
-        root.section("sph").choice("contacts", {"frictionless", "bonded"}, "frictionless") == "frictionless";
+    sph::Settings& sph = setup.simulation.sph;
+    const Section table = root.section("sph");
+    if (sph.formulation == sph::Formulation::standard)
+        table.choice("contacts", {"bonded"}, "bonded");
+    else
+        sph.several_bodies =
+            table.choice("contacts", {"frictionless", "bonded"}, "frictionless") == "frictionless";
 }
 
 }  // namespace
