@@ -20,7 +20,7 @@ struct Settings {
     double constant = newton_constant;  ///< of gravitation [m3 kg-1 s-2]
     Opening opening = Opening::geometric;
     double theta = 0.65;          ///< for Opening::geometric, and for the first step of Opening::relative
-    double accuracy = 1e-4;       ///< for Opening::relative [1]
+    double accuracy = 1e-2;       ///< for Opening::relative [1]
     int order = 3;                ///< highest multipole: 1 mass alone, 2 quadrupole, 3 octupole
     bool direct = false;          ///< every pair, for reference: work grows as the square of the particles
     double softening_length = 0;  ///< in place of every smoothing length [m]; 0: the smoothing lengths

@@ -184,6 +184,31 @@ TEST(GravityOpening, TakesNoLopsidedCellTogether) {
     EXPECT_TRUE(opening.accepts(node, at(6.0, 0.01)));
 }
 
+TEST(GravityGap, IsFoundNotPassedOver) {
+    using namespace gravity;
+    Tree tree;
+    tree.sources = {{{0, 0, 0}, 1, 0.01}, {{0.1, 0, 0}, 1, 0.01}};
+    Node node{};
+    node.moments = moments_of(tree.sources);
+    node.target = {{{0, 0, 0}, {0.1, 0, 0}}, 0.01, 0};
+    node.radius = 0.05;
+    node.count = 2;
+    node.is_leaf = node.is_here = true;
+    tree.nodes = {node};
+    const Group group{0, 2, node.target};
+    const OpeningTest opening{
+        .relative = false, .theta2 = 0.25, .half_support = 1, .constant = 1, .accuracy = 1e-3, .order = 3};
+    const auto softening = softening_of(with(sph::KernelKind::gaussian));
+    GroupForces<double> whole(tree, opening, softening, {1, 1});
+    EXPECT_EQ(whole.evaluate(group).softened, 4u);
+    EXPECT_FALSE(whole.found_gap());
+    EXPECT_NEAR(whole.acceleration(0, 0), 100, 1e-10);
+    tree.nodes[0].is_here = false;
+    GroupForces<double> holed(tree, opening, softening, {1, 1});
+    holed.evaluate(group);
+    EXPECT_TRUE(holed.found_gap());
+}
+
 TEST(GravityPairs, ForcesAreOppositeAndSelfIsLeftOut) {
     const auto softening = gravity::softening_of(with(sph::KernelKind::gaussian));
     for (const double distance : {0.0, 0.3, 1.1, 2.4, 5.0}) {
