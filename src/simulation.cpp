@@ -220,6 +220,9 @@ void Simulation::material_response(double damage_time) {
         const Material& material = setup_.materials[b];
         const auto body = static_cast<std::uint8_t>(b);
         talus::evaluate(material.eos, density, energy, pressure, sound, bodies, body);
+        if (std::isfinite(material.least_pressure))
+            for (std::size_t i = 0; i < pressure.size(); ++i)
+                if (bodies[i] == body) pressure[i] = std::max(pressure[i], material.least_pressure);
         if (material.shear_modulus > 0) {
             const StrengthState state{pressure, energy, damage};
             limit_stress(material.strength, state, stress_columns(particles_, field::predicted_stress),

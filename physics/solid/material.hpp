@@ -1,5 +1,6 @@
 #pragma once
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,8 @@ struct Material {
     double reference_density = 0;        ///< density of a body at rest [kg/m3]
     Strength strength{};                 ///< limit of the deviatoric stress
     std::optional<Fracture> fracture{};  ///< flaws and cracks, if it is brittle
+    /// Less pressure than this opens the matter, which keeps it [Pa]: 0 for fluids that bear no tension.
+    double least_pressure = -std::numeric_limits<double>::infinity();
     double initial_internal_energy = 0;  ///< of a body at rest [J/kg]
 
     /// E = 9 K mu / (3 K + mu) [Pa].

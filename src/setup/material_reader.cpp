@@ -80,6 +80,9 @@ Material read_material(const Section& table, const std::string& name) {
     material.eos = read_equation_of_state(table.section("equation_of_state"), material.reference_density);
     material.shear_modulus = table.number("shear_modulus", "Pa", 0.0, not_negative);
     material.bulk_modulus = bulk_modulus(material.eos);
+    if (table.has("least_pressure"))
+        material.least_pressure =
+            table.number("least_pressure", "Pa", {}, {-std::numeric_limits<double>::infinity(), 0});
     const Section strength = table.section("strength");
     if (strength.exists()) material.strength = read_strength(strength);
     if (!std::holds_alternative<NoStrengthLimit>(material.strength) && material.shear_modulus == 0)

@@ -223,10 +223,10 @@ double widest_open_spacing(const SceneSetup& setup) {
 void read_contacts(const Section& root, SceneSetup& setup) {
     bool solid = false;
     for (const Material& material : setup.simulation.materials) solid |= material.shear_modulus > 0;
-    if (!solid || setup.bodies.size() < 2) return;
+    if (setup.bodies.size() < 2) return;
     sph::Settings& sph = setup.simulation.sph;
     const Section table = root.section("sph");
-    if (sph.formulation == sph::Formulation::standard)
+    if (!solid || sph.formulation == sph::Formulation::standard)
         table.choice("contacts", {"bonded"}, "bonded");
     else
         sph.several_bodies =
