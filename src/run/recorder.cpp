@@ -61,6 +61,7 @@ RunState run_state(const Simulation& simulation, const Scene& scene) {
     state.scene_text = scene.text();
     state.resolved_scene = scene.resolved();
     state.version = TALUS_VERSION;
+    for (const Material& material : simulation.setup().materials) state.materials.push_back(material.name);
     return state;
 }
 
@@ -112,19 +113,12 @@ Recorder::Recorder(const Communicator& comm, std::filesystem::path folder, const
 
 Recorder::~Recorder() = default;
 
-std::unique_ptr<Simulation> Recorder::restore(const std::string& what) {
-    last_checkpoint_ = find_checkpoint(comm_, what, folder_);
-    ParticleSet particles = empty_particles(setup_);
-    const RunState state = read_checkpoint(comm_, last_checkpoint_, {&particles});
-    if (comm_.is_root()) {
-        files_->log->info("going on from {} (step {}, time {} s)", last_checkpoint_.string(), state.step,
-                          state.time);
-        if (state.resolved_scene != scene_.resolved())
-            files_->log->warn("the scene differs from the one that wrote this checkpoint");
-    }
-    auto simulation = std::make_unique<Simulation>(comm_, setup_.simulation, std::move(particles));
-    simulation->resume(state.time, state.time_step, state.step);
-    return simulation;
+void Recorder::go_on_from(const std::filesystem::path& checkpoint, const RunState& state) {
+    last_checkpoint_ = checkpoint;
+    if (!comm_.is_root()) return;
+    files_->log->info("going on from {} (step {}, time {} s)", checkpoint.string(), state.step, state.time);
+    if (state.resolved_scene != scene_.resolved())
+        files_->log->warn("the scene differs from the one that wrote this checkpoint");
 }
 
 void Recorder::begin(Simulation& simulation, double end_time) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "io/run_state.hpp"
 #include "io/scene.hpp"
 #include "src/setup/scene_setup.hpp"
 #include "src/simulation.hpp"
@@ -22,8 +23,8 @@ class Recorder {
 
     const std::filesystem::path& folder() const { return folder_; }
 
-    /// A simulation as its checkpoint left it. `what`: see find_checkpoint().
-    std::unique_ptr<Simulation> restore(const std::string& what);
+    /// Notes that the run is not new: it goes on from the state of a checkpoint.
+    void go_on_from(const std::filesystem::path& checkpoint, const RunState& state);
     /// Before the first step: describes the run, and for a new one writes its first state.
     void begin(Simulation& simulation, double end_time);
     void after_step(Simulation& simulation);

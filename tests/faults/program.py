@@ -81,6 +81,7 @@ class BadInput(Case):
         self.assert_fails(done, 2, "cheese", "materials/cheese.toml")
         self.assert_fails(talus("hash", self.folder / "none.h5", ranks=0), 3, "none.h5")
         self.assert_fails(talus("run", SCENE, "--quick", "--restart", "latest", "--out", self.out), 3, "checkpoint")
+        self.assertFalse(self.out.exists(), "a run that cannot begin leaves no folder")
 
     def test_a_shape_file_that_is_not_closed(self):
         scene = (RUNS / "bilobed_impact" / "scene.toml").read_text()
@@ -100,6 +101,16 @@ class BadInput(Case):
         blocker = self.folder / "file"
         blocker.write_text("not a folder")
         self.assert_fails(talus("run", SCENE, "--quick", "--out", blocker / "out"), 3, "file")
+
+
+    def test_a_checkpoint_of_another_scene(self):
+        self.assertEqual(talus("run", RUNS / "sod_tube", "--quick", "--steps", "2", "--out", self.out).returncode, 0)
+        before = self.hash(self.out)
+        for ranks in (1, 3):
+            done = talus("run", RUNS / "wall_shock", "--quick", "--restart", "latest", "--out", self.out, ranks=ranks)
+            self.assert_fails(done, 3, r"checkpoint_000000002\.h5: is of a scene of 2 bodies \(gas, gas\), "
+                              r"this one has 1 body")
+        self.assertEqual(self.hash(self.out), before)
 
 
 class RunTimeFailures(Case):
