@@ -96,10 +96,11 @@ Recorder::Recorder(const Communicator& comm, std::filesystem::path folder, const
       folder_(std::move(folder)),
       scene_(scene),
       setup_(setup),
+      is_new_(is_new),
       files_(std::make_unique<Files>()) {
     agree_on_root(comm_, [&] {
         std::filesystem::path aside;
-        if (is_new && holds_results(folder_)) aside = set_aside(folder_);
+        if (is_new_ && holds_results(folder_)) aside = set_aside(folder_);
         std::filesystem::create_directories(folder_);
         const auto console = std::make_shared<spdlog::sinks::stdout_color_sink_mt>();
         const auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>((folder_ / "log.txt").string());
@@ -122,7 +123,6 @@ void Recorder::go_on_from(const std::filesystem::path& checkpoint, const RunStat
 }
 
 void Recorder::begin(Simulation& simulation, double end_time) {
-    const bool is_new = simulation.step_count() == 0;
     first_step_ = simulation.step_count();
     time_before_ = simulation.time();
     if (comm_.is_root()) {
@@ -136,8 +136,8 @@ void Recorder::begin(Simulation& simulation, double end_time) {
         for (const std::string& warning : warnings(setup_)) files_->log->warn("note: {}", warning);
     files_->diagnostics = std::make_unique<CsvWriter>(
         comm_, folder_ / "diagnostics.csv", diagnostics_columns(setup_.simulation),
-        is_new ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));
-    if (is_new) {
+        is_new_ ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));
+    if (is_new_) {
         write_diagnostics(simulation);
         write_snapshot_now(simulation, 0);
         write_checkpoint_now(simulation);
@@ -179,6 +179,13 @@ void Recorder::stop_early(Simulation& simulation, const std::string& why) {
 
 void Recorder::finish(Simulation& simulation) {
     files_->progress->finish();
+    if (!is_new_ && simulation.step_count() == first_step_) {
+        // What is there is complete; work fields, which snapshots hold, have no values before a step.
+        if (comm_.is_root())
+            files_->log->info("nothing left to do at step {}, time {} s", first_step_, simulation.time());
+        write_analysis(simulation);
+        return;
+    }
     write_checkpoint_now(simulation);
     if (last_snapshot_step_ != simulation.step_count()) {  // the last state, due or not
         const double interval = setup_.output.snapshot_interval;

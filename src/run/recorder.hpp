@@ -54,6 +54,7 @@ class Recorder {
     std::filesystem::path folder_;
     const Scene& scene_;
     const SceneSetup& setup_;
+    bool is_new_;
     std::unique_ptr<Files> files_;
     std::filesystem::path last_checkpoint_;
     std::chrono::steady_clock::time_point last_checkpoint_time_, step_began_, began_;

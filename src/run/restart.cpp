@@ -13,7 +13,8 @@ namespace talus {
 namespace {
 
 std::string listed(const std::vector<std::string>& materials) {
-    return fmt::format("{} ({})", materials.size() == 1 ? "1 body" : fmt::format("{} bodies", materials.size()),
+    return fmt::format("{} ({})",
+                       materials.size() == 1 ? "1 body" : fmt::format("{} bodies", materials.size()),
                        fmt::join(materials, ", "));
 }
 
@@ -23,8 +24,8 @@ void check_bodies(const Restart& restart, const SceneSetup& setup) {
     for (const Material& material : setup.simulation.materials) wanted.push_back(material.name);
     const std::vector<std::string>& stored = restart.state.materials;
     if (!stored.empty() && stored != wanted)
-        throw std::runtime_error(fmt::format("{}: is of a scene of {}, this one has {}", restart.file.string(),
-                                             listed(stored), listed(wanted)));
+        throw std::runtime_error(fmt::format("{}: is of a scene of {}, this one has {}",
+                                             restart.file.string(), listed(stored), listed(wanted)));
     for (const std::uint8_t body : restart.particles.own(field::body))
         if (body >= wanted.size())
             throw std::runtime_error(fmt::format("{}: holds particles of body {}, the scene has {}",

@@ -16,9 +16,9 @@ struct Restart {
     ParticleSet particles;  ///< each rank its share, not yet where they belong
 };
 
-/// Reads the checkpoint that `what` means (see find_checkpoint()) for a scene. Throws AgreedError (exit code 3)
-/// if there is none, if it is damaged, or if it holds other bodies than the scene: their number and the names
-/// of their materials must be the same. Collective.
+/// Reads the checkpoint that `what` means (see find_checkpoint()) for a scene. Throws AgreedError (exit code
+/// 3) if there is none, if it is damaged, or if it holds other bodies than the scene: their number and the
+/// names of their materials must be the same. Collective.
 Restart read_restart(const Communicator& comm, const std::filesystem::path& what,
                      const std::filesystem::path& output_folder, const SceneSetup& setup);
 

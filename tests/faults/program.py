@@ -1,6 +1,6 @@
 """What the program does when things go wrong: clear messages, agreed exit codes on all ranks, nothing lost.
 
-usage: program.py PROGRAM MPIRUN RUNS_FOLDER
+usage: program.py PROGRAM MPIRUN RUNS_FOLDER [-k PATTERN]
 Exit codes: 0 done, 1 run-time failure, 2 bad scene or usage, 3 input/output, 75 stopped early with a checkpoint.
 """
 import os
@@ -168,6 +168,25 @@ class EarlyStops(Case):
         self.assertEqual(talus("hash", self.out, ranks=0).returncode, 0)
 
 
+class Restarts(Case):
+    def files(self):
+        return {path.name: path.read_bytes() for path in self.out.iterdir() if path.name != "log.txt"}
+
+    def test_one_with_nothing_left_to_do_changes_nothing(self):
+        for steps in (0, 4):  # no step at all, and some
+            done = talus("run", RUNS / "sod_tube", "--quick", "--steps", steps, "--out", self.out)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            before = self.files()
+            self.assertTrue([name for name in before if name.endswith(".hdf")])
+            done = talus("run", RUNS / "sod_tube", "--quick", "--steps", steps, "--out", self.out,
+                         "--restart", "latest", ranks=3)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertIn("nothing left to do", done.stdout)
+            self.assertEqual(before.keys(), self.files().keys())
+            for name, content in self.files().items():
+                self.assertTrue(content == before[name], name + " has changed")
+
+
 class DamagedCheckpoints(Case):
     def test_a_flipped_byte_is_refused_and_the_previous_checkpoint_offered(self):
         for steps, options in [(3, []), (6, ["--restart", "latest"])]:
@@ -187,4 +206,4 @@ class DamagedCheckpoints(Case):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)

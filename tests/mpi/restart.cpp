@@ -16,7 +16,8 @@ using testing::some_state;
 SceneSetup scene_of(const std::vector<std::string>& materials) {
     SceneSetup setup;
     setup.simulation.box.dimension = 2;
-    for (const std::string& name : materials) setup.simulation.materials.push_back(Material{.name = name, .eos = IdealGas{}});
+    for (const std::string& name : materials)
+        setup.simulation.materials.push_back(Material{.name = name, .eos = IdealGas{}});
     return setup;
 }
 
@@ -61,8 +62,8 @@ TEST(Restart, ChecksParticlesWhereTheCheckpointDoesNotNameMaterials) {
     write_bodies(comm, folder.path, scene_of({"rubber", "rubber"}), false);
     const Restart same = read_restart(comm, "latest", folder.path, scene_of({"rubber", "rubber"}));
     EXPECT_TRUE(same.state.materials.empty());
-    const std::string message = agreed_failure(
-        comm, [&] { (void)read_restart(comm, "latest", folder.path, scene_of({"rubber"})); });
+    const std::string message =
+        agreed_failure(comm, [&] { (void)read_restart(comm, "latest", folder.path, scene_of({"rubber"})); });
     EXPECT_NE(message.find("holds particles of body 1, the scene has 1 body (rubber)"), std::string::npos)
         << message;
 }
