@@ -71,13 +71,29 @@ bool holds_results(const std::filesystem::path& folder) {
            !list_checkpoints(folder).empty();
 }
 
+bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder) {
+    const std::filesystem::path relative =
+        std::filesystem::canonical(path).lexically_relative(std::filesystem::canonical(folder));
+    return !relative.empty() && *relative.begin() != "..";
+}
+
 /// Moves a folder with results to the first free name among folder.1, folder.2, ...; returns that name.
-std::filesystem::path set_aside(const std::filesystem::path& folder) {
+/// Throws if that would move the working folder or the scene.
+std::filesystem::path set_aside(const std::filesystem::path& folder, const std::filesystem::path& scene) {
+    const auto refuse = [&](std::string_view why) {
+        throw std::runtime_error(fmt::format(
+            "{}: holds the results of an earlier run and {}; move them away or name another --out",
+            folder.string(), why));
+    };
+    if (is_within(std::filesystem::current_path(), folder)) refuse("is the working folder");
+    if (is_within(scene, folder)) refuse("the scene");
     for (int n = 1;; ++n) {
         std::filesystem::path aside = folder;
         aside += fmt::format(".{}", n);
         if (std::filesystem::exists(aside)) continue;
-        std::filesystem::rename(folder, aside);
+        std::error_code failure;
+        std::filesystem::rename(folder, aside, failure);
+        if (failure) refuse(fmt::format("cannot be renamed to {} ({})", aside.string(), failure.message()));
         return aside;
     }
 }
@@ -100,7 +116,7 @@ Recorder::Recorder(const Communicator& comm, std::filesystem::path folder, const
       files_(std::make_unique<Files>()) {
     agree_on_root(comm_, [&] {
         std::filesystem::path aside;
-        if (is_new_ && holds_results(folder_)) aside = set_aside(folder_);
+        if (is_new_ && holds_results(folder_)) aside = set_aside(folder_, scene_.file());
         std::filesystem::create_directories(folder_);
         const auto console = std::make_shared<spdlog::sinks::stdout_color_sink_mt>();
         const auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>((folder_ / "log.txt").string());

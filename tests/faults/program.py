@@ -24,9 +24,9 @@ def command(arguments, ranks):
     return line + [str(a) for a in arguments]
 
 
-def talus(*arguments, ranks=2):
+def talus(*arguments, ranks=2, cwd=None):
     return subprocess.run(command(arguments, ranks), capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          env=ENVIRONMENT, timeout=240)
+                          env=ENVIRONMENT, timeout=240, cwd=cwd)
 
 
 class Case(unittest.TestCase):
@@ -200,9 +200,21 @@ class DamagedCheckpoints(Case):
         self.assert_fails(done, 3, newest.name, r"checkpoint_000000003\.h5")
 
     def test_an_earlier_run_is_kept(self):
-        for _ in range(2):
-            self.assertEqual(talus("run", SCENE, "--quick", "--steps", "2", "--out", self.out).returncode, 0)
-        self.assertEqual(self.hash(self.out), self.hash(self.folder / "out.1"))
+        for out in (self.out, f"{self.out}/", f"{self.folder}/./out//"):
+            done = talus("run", RUNS / "sod_tube", "--quick", "--steps", "2", "--out", out, ranks=0)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        for aside in ("out.1", "out.2"):
+            self.assertEqual(self.hash(self.out), self.hash(self.folder / aside))
+
+    def test_neither_the_working_folder_nor_the_scene_is_moved(self):
+        scene = self.scene((RUNS / "sod_tube" / "scene.toml").read_text())
+        options = ["run", scene, "--quick", "--steps", "1", "--out"]
+        first = talus(*options, ".", ranks=0, cwd=self.folder)
+        self.assertEqual(first.returncode, 0, first.stdout + first.stderr)
+        before = self.hash(self.folder)
+        self.assert_fails(talus(*options, ".", cwd=self.folder), 3, "is the working folder", "name another --out")
+        self.assert_fails(talus(*options, self.folder, ranks=0), 3, "the scene", "name another --out")
+        self.assertEqual(self.hash(self.folder), before)
 
 
 if __name__ == "__main__":
