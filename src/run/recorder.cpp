@@ -130,11 +130,13 @@ Recorder::Recorder(const Communicator& comm, std::filesystem::path folder, const
 
 Recorder::~Recorder() = default;
 
-void Recorder::go_on_from(const std::filesystem::path& checkpoint, const RunState& state) {
-    last_checkpoint_ = checkpoint;
+void Recorder::go_on_from(const Restart& restart) {
+    last_checkpoint_ = restart.file;
+    checkpoint_seconds_ = restart.seconds;
     if (!comm_.is_root()) return;
-    files_->log->info("going on from {} (step {}, time {} s)", checkpoint.string(), state.step, state.time);
-    if (state.resolved_scene != scene_.resolved())
+    files_->log->info("going on from {} (step {}, time {} s)", restart.file.string(), restart.state.step,
+                      restart.state.time);
+    if (restart.state.resolved_scene != scene_.resolved())
         files_->log->warn("the scene differs from the one that wrote this checkpoint");
 }
 
@@ -226,10 +228,12 @@ std::string Recorder::after_failure(const Simulation& simulation) {
 }
 
 void Recorder::write_checkpoint_now(Simulation& simulation) {
+    const auto began = std::chrono::steady_clock::now();
     const RunState state = run_state(simulation, scene_);
     write_checkpoint(comm_, folder_, state, {&simulation.particles()});
     last_checkpoint_ = find_checkpoint(comm_, "latest", folder_);
     last_checkpoint_time_ = std::chrono::steady_clock::now();
+    checkpoint_seconds_ = std::chrono::duration<double>(last_checkpoint_time_ - began).count();
 }
 
 void Recorder::write_snapshot_now(Simulation& simulation, int index) {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "io/run_state.hpp"
 #include "io/scene.hpp"
+#include "src/run/restart.hpp"
 #include "src/setup/scene_setup.hpp"
 #include "src/simulation.hpp"
 
@@ -24,7 +24,7 @@ class Recorder {
     const std::filesystem::path& folder() const { return folder_; }
 
     /// Notes that the run is not new: it goes on from the state of a checkpoint.
-    void go_on_from(const std::filesystem::path& checkpoint, const RunState& state);
+    void go_on_from(const Restart& restart);
     /// Before the first step: describes the run, and for a new one writes its first state.
     void begin(Simulation& simulation, double end_time);
     void after_step(Simulation& simulation);
@@ -38,6 +38,8 @@ class Recorder {
     std::string after_failure(const Simulation& simulation);
     /// Longest wall time of a step so far [s].
     double longest_step() const { return longest_step_; }
+    /// Wall time of writing the last checkpoint, or of reading the one that the run goes on from [s].
+    double checkpoint_seconds() const { return checkpoint_seconds_; }
 
   private:
     struct Files;
@@ -58,7 +60,7 @@ class Recorder {
     std::unique_ptr<Files> files_;
     std::filesystem::path last_checkpoint_;
     std::chrono::steady_clock::time_point last_checkpoint_time_, step_began_, began_;
-    double time_before_ = 0, longest_step_ = 0, first_energy_ = 0;
+    double time_before_ = 0, longest_step_ = 0, checkpoint_seconds_ = 0, first_energy_ = 0;
     std::uint64_t first_step_ = 0, last_snapshot_step_ = ~std::uint64_t{0};
 };
 

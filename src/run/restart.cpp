@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <chrono>
 #include <stdexcept>
 
 #include "io/agree.hpp"
@@ -36,9 +36,11 @@ void check_bodies(const Restart& restart, const SceneSetup& setup) {
 
 Restart read_restart(const Communicator& comm, const std::filesystem::path& what,
                      const std::filesystem::path& output_folder, const SceneSetup& setup) {
+    const auto began = std::chrono::steady_clock::now();
     Restart restart{find_checkpoint(comm, what, output_folder), {}, empty_particles(setup)};
     restart.state = read_checkpoint(comm, restart.file, {&restart.particles});
     agree_on(comm, [&] { check_bodies(restart, setup); });
+    restart.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return restart;
 }
 

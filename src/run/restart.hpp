@@ -14,6 +14,7 @@ struct Restart {
     std::filesystem::path file;
     RunState state;
     ParticleSet particles;  ///< each rank its share, not yet where they belong
+    double seconds = 0;     ///< wall time of reading [s]
 };
 
 /// Reads the checkpoint that `what` means (see find_checkpoint()) for a scene. Throws AgreedError (exit code

@@ -33,7 +33,7 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
                           restart ? std::move(restart->particles) : make_particles(comm, setup));
     Recorder recorder(comm, folder, scene, setup, !restart);
     if (restart) {
-        recorder.go_on_from(restart->file, restart->state);
+        recorder.go_on_from(*restart);
         simulation.resume(restart->state.time, restart->state.time_step, restart->state.step);
     } else {
         simulation.start();
@@ -41,7 +41,8 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
     recorder.begin(simulation, end_time);
     try {
         while (!finished(simulation, end_time, options)) {
-            if (const std::string why = stop.reason(recorder.longest_step()); !why.empty()) {
+            if (const std::string why = stop.reason(recorder.longest_step(), recorder.checkpoint_seconds());
+                !why.empty()) {
                 recorder.stop_early(simulation, why);
                 return exit_stopped_early;
             }

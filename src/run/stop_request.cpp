@@ -21,16 +21,14 @@ StopRequest::StopRequest(const Communicator& comm, std::filesystem::path folder,
     std::signal(SIGUSR1, [](int) { signals_received.fetch_add(1); });
 }
 
-std::string StopRequest::reason(double step_seconds) {
+std::string StopRequest::reason(double step_seconds, double checkpoint_seconds) {
     int found = none;
     if (comm_.is_root()) {
-        constexpr double checkpoint_seconds = 5;
         const double elapsed =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         std::error_code unreadable;
         if (std::filesystem::exists(stop_file_, unreadable)) found = stop_file;
-        if (elapsed + 3 * step_seconds + std::min(checkpoint_seconds, 0.05 * walltime_) > walltime_)
-            found = out_of_time;
+        if (elapsed + 3 * step_seconds + 2 * checkpoint_seconds > walltime_) found = out_of_time;
     }
     if (signals_received.load() > 0) found = signalled;
     switch (comm_.all_max(found)) {
