@@ -94,7 +94,7 @@ class Scene {
     static std::string read_text(const std::filesystem::path& file);
     /// `quick`: keys of the table [quick] override the others. `overrides`: "key.path=value" with a TOML
     /// value or bare words, stronger than [quick]. Throws SceneError on syntax errors, naming line and
-    /// column.
+    /// column, and if a scene without that table shall be quick.
     static Scene parse(std::string text, const std::filesystem::path& file, bool quick = false,
                        const std::vector<std::string>& overrides = {});
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "src/run/commands.hpp"
+#include "src/run/scene_checks.hpp"
 #include "src/run/warnings.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -87,7 +88,9 @@ double measured_step_seconds(Simulation& simulation) {
 int check_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
     const SceneSetup setup = read_scene(comm, scene);
+    check_plan(scene, setup, setup.output.end_time);
     Simulation simulation(comm, setup.simulation, make_particles(comm, setup));
+    check_box(scene, simulation);
     simulation.start();
     const double first_step = simulation.time_step();
     const auto largest = comm.all_max(static_cast<std::uint64_t>(simulation.particles().size()));

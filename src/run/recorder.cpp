@@ -171,7 +171,7 @@ void Recorder::after_step(Simulation& simulation) {
     if (fell_due(time_before_, time, setup_.output.diagnostics_interval)) write_diagnostics(simulation);
     if (const double interval = setup_.output.snapshot_interval;
         interval > 0 && fell_due(time_before_, time, interval))
-        write_snapshot_now(simulation, static_cast<int>(std::floor(time / interval)));
+        write_snapshot_now(simulation, static_cast<std::uint64_t>(time / interval));
     const auto now = std::chrono::steady_clock::now();
     if (setup_.output.checkpoint_interval > 0) {
         const std::chrono::duration<double> since = now - last_checkpoint_time_;
@@ -208,7 +208,7 @@ void Recorder::finish(Simulation& simulation) {
     if (last_snapshot_step_ != simulation.step_count()) {  // the last state, due or not
         const double interval = setup_.output.snapshot_interval;
         write_snapshot_now(simulation,
-                           1 + (interval > 0 ? static_cast<int>(simulation.time() / interval) : 0));
+                           1 + (interval > 0 ? static_cast<std::uint64_t>(simulation.time() / interval) : 0));
     }
     write_analysis(simulation);
     print_summary(simulation);
@@ -236,7 +236,7 @@ void Recorder::write_checkpoint_now(Simulation& simulation) {
     checkpoint_seconds_ = std::chrono::duration<double>(last_checkpoint_time_ - began).count();
 }
 
-void Recorder::write_snapshot_now(Simulation& simulation, int index) {
+void Recorder::write_snapshot_now(Simulation& simulation, std::uint64_t index) {
     last_snapshot_step_ = simulation.step_count();
     const ParticleSet& particles = simulation.particles();
     std::vector<SnapshotField> fields;
@@ -246,8 +246,7 @@ void Recorder::write_snapshot_now(Simulation& simulation, int index) {
         if (particles.has(*info)) fields.push_back({.field = info});
     fields.push_back({.field = particles.has(field::density) ? &field::density : &field::predicted_density,
                       .name = snapshot_name(field::density)});
-    write_snapshot(comm_, folder_, static_cast<std::uint64_t>(index), run_state(simulation, scene_),
-                   particles, fields);
+    write_snapshot(comm_, folder_, index, run_state(simulation, scene_), particles, fields);
 }
 
 void Recorder::write_analysis(const Simulation& simulation) {

@@ -45,7 +45,7 @@ class Recorder {
     struct Files;
 
     void write_checkpoint_now(Simulation& simulation);
-    void write_snapshot_now(Simulation& simulation, int index);
+    void write_snapshot_now(Simulation& simulation, std::uint64_t index);
     void write_analysis(const Simulation& simulation);
     void write_diagnostics(Simulation& simulation);
     void print_summary(Simulation& simulation);

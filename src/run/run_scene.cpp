@@ -5,6 +5,7 @@
 #include "src/run/commands.hpp"
 #include "src/run/recorder.hpp"
 #include "src/run/restart.hpp"
+#include "src/run/scene_checks.hpp"
 #include "src/run/stop_request.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -23,6 +24,7 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
     const SceneSetup setup = read_scene(comm, scene);
     const double end_time = options.until.value_or(setup.output.end_time);
+    check_plan(scene, setup, end_time);
     const std::filesystem::path folder = output_folder(scene, options);
     StopRequest stop(comm, folder, options.walltime);
 
@@ -31,6 +33,7 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
     if (!options.restart.empty()) restart = read_restart(comm, options.restart, folder, setup);
     Simulation simulation(comm, setup.simulation,
                           restart ? std::move(restart->particles) : make_particles(comm, setup));
+    check_box(scene, simulation);
     Recorder recorder(comm, folder, scene, setup, !restart);
     if (restart) {
         recorder.go_on_from(*restart);

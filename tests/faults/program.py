@@ -75,6 +75,23 @@ class BadInput(Case):
                      "--set", "gravity.theta=0.5")
         self.assert_fails(done, 2, r"gravity\.theta")
 
+    def test_scenes_that_cannot_run(self):
+        wave, tube = RUNS / "acoustic_wave", RUNS / "sod_tube"
+        reach = r"scene\.toml:\d+: box\.upper = .*along x, where it is closed, shorter than the interaction radius"
+        for command, ranks in (("run", 2), ("check", 0)):
+            for scene, setting, *patterns in (
+                    (wave, "body[0].particles=3", reach), (wave, "body[0].particles=1", reach),
+                    (tube, "body[1].pressure=-1", r"--set body\[1\]\.pressure: .*no sound speed"),
+                    (tube, "output.snapshots=1e-12", r"--set output\.snapshots: .*at least [0-9.e-]+ s")):
+                options = [command, scene, "--quick", "--set", setting]
+                done = talus(*options, *(["--out", self.out] if command == "run" else []), ranks=ranks)
+                self.assert_fails(done, 2, *patterns)
+                self.assertNotIn("MPI_ABORT", done.stderr)
+        self.assertFalse(self.out.exists(), "a scene that cannot run leaves no folder")
+        text = (tube / "scene.toml").read_text()
+        self.assert_fails(talus("check", self.scene(text[:text.index("[quick]")]), "--quick", ranks=0), 2,
+                          r"scene\.toml: quick \(missing")
+
     def test_missing_files(self):
         self.assert_fails(talus("run", self.folder / "nowhere"), 2, "nowhere")
         done = talus("run", SCENE, "--quick", "--set", "body[0].material=cheese", "--out", self.out)
