@@ -12,17 +12,16 @@ void check_plan(const Scene& scene, const SceneSetup& setup, double end_time) {
         const Body& body = setup.bodies[b];
         const EquationOfState& eos = setup.simulation.materials[b].eos;
         if (evaluate(eos, body.density, body.internal_energy).sound_speed > 0) continue;
-        tables[b].error(tables[b].has("pressure") ? "pressure" : "internal_energy",
-                        fmt::format("a gas of {} J/kg has no sound speed; allowed: more than 0",
-                                    body.internal_energy));
+        tables[b].error(
+            tables[b].has("pressure") ? "pressure" : "internal_energy",
+            fmt::format("a gas of {} J/kg has no sound speed; allowed: more than 0", body.internal_energy));
     }
     const double interval = setup.output.snapshot_interval;
     if (interval > 0 && end_time / interval > static_cast<double>(most_snapshots - 2))
-        scene.root()
-            .section("output")
-            .error("snapshots", fmt::format("makes {:.3g} files until {} s; allowed: 0 or at least {:.3g} s",
-                                            end_time / interval, end_time,
-                                            end_time / static_cast<double>(most_snapshots - 2)));
+        scene.root().section("output").error(
+            "snapshots",
+            fmt::format("makes {:.3g} files until {} s; allowed: 0 or at least {:.3g} s", end_time / interval,
+                        end_time, end_time / static_cast<double>(most_snapshots - 2)));
     scene.finish();
 }
 

@@ -96,7 +96,11 @@ class BadInput(Case):
         self.assert_fails(talus("run", self.folder / "nowhere"), 2, "nowhere")
         done = talus("run", SCENE, "--quick", "--set", "body[0].material=cheese", "--out", self.out)
         self.assert_fails(done, 2, "cheese", "materials/cheese.toml")
-        self.assert_fails(talus("hash", self.folder / "none.h5", ranks=0), 3, "none.h5")
+        for command in ("hash", "info"):
+            done = talus(command, self.folder / "none.h5", ranks=0)
+            self.assert_fails(done, 3, "none.h5: no such file")
+            self.assertEqual(done.stderr.count("none.h5"), 1)
+            self.assert_fails(talus(command, self.folder, ranks=0), 3, "no checkpoint in this folder")
         self.assert_fails(talus("run", SCENE, "--quick", "--restart", "latest", "--out", self.out), 3, "checkpoint")
         self.assertFalse(self.out.exists(), "a run that cannot begin leaves no folder")
 
@@ -112,7 +116,16 @@ class BadInput(Case):
     def test_usage(self):
         self.assert_fails(talus("run", ranks=0), 2, "scene")
         self.assert_fails(talus("run", SCENE, "--walltime", "soon"), 2, "soon")
-        self.assert_fails(talus("run", SCENE, "--until", "3 kg"), 2, "3 kg")
+        for option, values in (("--until", ("3 kg", "-1", "0", "1e", "1e999", "nan", "")),
+                               ("--steps", ("-1", "1.5", "many", "99999999999999999999"))):
+            for value in values:
+                done = talus("run", SCENE, "--quick", option, value, "--out", self.out, ranks=0)
+                self.assert_fails(done, 2, f"{option}.*{value}")
+                self.assertNotIn("stod", done.stderr)
+        self.assert_fails(talus("frob", SCENE), 2, "frob", "allowed: analyse, check, hash, info, run")
+        self.assert_fails(talus("chekc", SCENE, ranks=0), 2, "chekc", r"did you mean check\?")
+        self.assert_fails(talus("check", "--set", "seed=3", "--set", "dimension=4", SCENE, ranks=0), 2,
+                          "--set dimension: dimension = 4")
 
     def test_output_that_cannot_be_written(self):
         blocker = self.folder / "file"
@@ -212,7 +225,9 @@ class DamagedCheckpoints(Case):
         newest = max(self.out.glob("checkpoint_*.h5"))
         content = bytearray(newest.read_bytes())
         content[len(content) // 2] ^= 1
+        self.assertEqual(talus("info", self.out, ranks=0).returncode, 0)
         newest.write_bytes(content)
+        self.assert_fails(talus("info", self.out, ranks=0), 3, re.escape(newest.name), "DAMAGED")
         done = talus("run", SCENE, "--quick", "--steps", "8", "--out", self.out, "--restart", "latest")
         self.assert_fails(done, 3, newest.name, r"checkpoint_000000003\.h5")
 
