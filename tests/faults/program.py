@@ -143,6 +143,23 @@ class BadInput(Case):
         self.assertEqual(self.hash(self.out), before)
 
 
+class Check(Case):
+    def test_memory_is_told_by_field_and_model_and_adds_up(self):
+        done = talus("check", RUNS / "rubber_rings", "--quick")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        total = int(re.search(r"fields \((\d+) bytes per particle\)", done.stdout).group(1))
+        fields = re.findall(r"^ +(\d+) B  (\w+) +([\w ]+?)  +(state|work) ", done.stdout, re.MULTILINE)
+        self.assertEqual(sum(int(size) for size, *_ in fields), total)
+        self.assertIn(("deviatoric_stress", "strength"), [(name, model) for _, name, model, _ in fields])
+        memory = re.search(r"largest rank after a step, without files: ([\d.]+) MB; the program itself ([\d.]+) MB, "
+                           r"fields of (\d+) own particles and (\d+) copies ([\d.]+) MB", done.stdout)
+        whole, program, own, copies, data = map(float, memory.groups())
+        self.assertGreater(copies, 0)
+        self.assertGreater(program, 1)
+        self.assertGreaterEqual(whole, program)
+        self.assertAlmostEqual(data, own * total / 1e6, delta=copies * total / 1e6 + 0.1)
+
+
 class RunTimeFailures(Case):
     def test_a_value_that_is_not_finite_stops_all_ranks_and_names_the_particle(self):
         # Four times the stable time step: values grow until they overflow.
