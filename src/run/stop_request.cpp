@@ -12,9 +12,9 @@ static_assert(std::atomic<int>::is_always_lock_free);
 enum Reason { none, signalled, stop_file, out_of_time };
 }  // namespace
 
-StopRequest::StopRequest(const Communicator& comm, std::filesystem::path folder, double walltime)
+StopRequest::StopRequest(const Communicator& comm, const std::filesystem::path& folder, double walltime)
     : comm_(comm),
-      stop_file_(std::move(folder) / "stop"),
+      stop_file_(folder / "stop"),
       walltime_(walltime),
       start_(std::chrono::steady_clock::now()) {
     signals_received = 0;

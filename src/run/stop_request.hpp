@@ -12,7 +12,7 @@ namespace talus {
 class StopRequest {
   public:
     /// Installs the signal handler. `walltime` [s] is counted from now.
-    StopRequest(const Communicator& comm, std::filesystem::path folder, double walltime);
+    StopRequest(const Communicator& comm, const std::filesystem::path& folder, double walltime);
 
     /// Why to stop, the same on every rank; empty: go on. The wall time is said to run out while there is
     /// still room for three times `step_seconds`, the longest wall time between two calls, and twice

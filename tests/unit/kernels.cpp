@@ -23,14 +23,13 @@ double integral(const Kernel& kernel, const std::function<double(double)>& of) {
     constexpr int steps = 4000;
     const double width = kernel.support() * h * (1 - 1e-13) / steps;
     double sum = 0;
-    for (int k = 0; k <= steps; ++k)
-        sum += (k == 0 || k == steps ? 1 : k % 2 == 1 ? 4 : 2) * of(k * width);
+    for (int k = 0; k <= steps; ++k) sum += (k == 0 || k == steps ? 1 : k % 2 == 1 ? 4 : 2) * of(k * width);
     return sum * width / 3;
 }
 
-/// W integrates to 1 and (1/r) dW/dr times r is its derivative. Tolerances: of Simpson's rule (1e-13 for these
-/// functions) and of exp_minus() as its comment says; of central differences of fourth order, e^4/30 of the
-/// fifth derivative, 1e-10 of W(0)/h at most with e = 1e-3 h.
+/// W integrates to 1 and (1/r) dW/dr times r is its derivative. Tolerances: of Simpson's rule (1e-13 for
+/// these functions) and of exp_minus() as its comment says; of central differences of fourth order, e^4/30 of
+/// the fifth derivative, 1e-10 of W(0)/h at most with e = 1e-3 h.
 template <int D, class Kernel>
 void expect_kernel(const Kernel& kernel, const std::string& name) {
     SCOPED_TRACE(testing::Message() << name << " in " << D << "D, support " << kernel.support());
@@ -57,7 +56,8 @@ void expect_kernel(const Kernel& kernel, const std::string& name) {
 
 template <int D>
 void expect_kernels() {
-    for (const double cutoff : {2.0, 2.5, 2.78, 3.0, 4.0}) expect_kernel<D>(sph::Gaussian<D>(cutoff), "Gaussian");
+    for (const double cutoff : {2.0, 2.5, 2.78, 3.0, 4.0})
+        expect_kernel<D>(sph::Gaussian<D>(cutoff), "Gaussian");
     expect_kernel<D>(sph::CubicSpline<D>(), "cubic spline");
     expect_kernel<D>(sph::WendlandC2<D>(), "Wendland C2");
     expect_kernel<D>(sph::WendlandC4<D>(), "Wendland C4");

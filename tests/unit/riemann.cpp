@@ -52,8 +52,8 @@ TEST(Riemann, IsAsCloseToTheExactSolutionAsStated) {
         SCOPED_TRACE(problem.name);
         const ExactRiemann exact(problem.left, problem.right, problem.gamma);
         const auto found = solved(problem.left, problem.right, problem.gamma);
-        const double fastest = std::max(sound_speed(problem.left, problem.gamma),
-                                        sound_speed(problem.right, problem.gamma));
+        const double fastest =
+            std::max(sound_speed(problem.left, problem.gamma), sound_speed(problem.right, problem.gamma));
         EXPECT_NEAR(found.pressure, exact.star_pressure(), problem.pressure_within * exact.star_pressure());
         EXPECT_NEAR(found.velocity, exact.star_velocity(), problem.velocity_within * fastest);
     }
@@ -65,7 +65,8 @@ TEST(Riemann, ErrsInThirdOrderOfTheStrengthOfRarefactions) {
     for (int k = 0; k < 2; ++k) {
         const double speed = 0.0125 / (k + 1);
         const GasState left{1, -speed, 1}, right{1, speed, 1};
-        errors[k] = std::abs(solved(left, right, 1.4).pressure - ExactRiemann(left, right, 1.4).star_pressure());
+        errors[k] =
+            std::abs(solved(left, right, 1.4).pressure - ExactRiemann(left, right, 1.4).star_pressure());
     }
     EXPECT_NEAR(errors[0] / errors[1], 8, 0.5);
 }

@@ -61,8 +61,8 @@ void sum_pairs(std::vector<Plain>& all, const Kernel& kernel, const sph::Setting
             if (approach < 0) {
                 const double mu = h * approach / (d * d + 0.01 * h * h);
                 viscosity = (-settings.viscosity_alpha * c * mu + settings.viscosity_beta * mu * mu) / rho;
-                i.viscous_speed =
-                    std::max(i.viscous_speed, settings.viscosity_alpha * c - 2 * settings.viscosity_beta * mu);
+                i.viscous_speed = std::max(i.viscous_speed,
+                                           settings.viscosity_alpha * c - 2 * settings.viscosity_beta * mu);
             }
             const Vector3d of_i = j.m * (i.sigma / (i.rho * i.rho) * gradient - viscosity / 2 * gradient),
                            of_j = j.m * (j.sigma / (j.rho * j.rho) * gradient - viscosity / 2 * gradient);
@@ -93,7 +93,8 @@ void expect_like_reference(const SampleChoice& choice, sph::KernelKind kind) {
         const Plain& q = all[i];
         SCOPED_TRACE(testing::Message() << choice.dimension << "D, particle " << i);
         for (int a = 0; a < choice.dimension; ++a)
-            EXPECT_NEAR(set.data(field::acceleration, a)[i], q.acceleration[a], tolerance * q.acceleration_size);
+            EXPECT_NEAR(set.data(field::acceleration, a)[i], q.acceleration[a],
+                        tolerance * q.acceleration_size);
         EXPECT_NEAR(set.data(field::specific_power)[i], q.power, tolerance * q.power_size);
         EXPECT_NEAR(set.data(field::viscous_speed)[i], q.viscous_speed, tolerance * q.viscous_speed);
     }
