@@ -119,6 +119,7 @@ void Decomposition::migrate(ParticleSet& particles, const CellGrid& grid) {
 
     const std::size_t bytes = state_bytes(particles);
     std::vector<Parcel> outgoing;
+    outgoing.reserve(leaving.size());
     for (const auto& [rank, indices] : leaving) outgoing.push_back(pack(particles, rank, indices, bytes));
     for (const Parcel& parcel : exchange_(std::move(outgoing))) {
         const std::size_t first = particles.size(), count = parcel.bytes.size() / bytes;

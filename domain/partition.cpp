@@ -33,9 +33,9 @@ std::uint64_t compact(std::uint64_t bits) {
 }
 
 std::uint64_t morton(const Cell& block) {
-    return spread(static_cast<std::uint64_t>(block[0] + block_bias)) |
-           spread(static_cast<std::uint64_t>(block[1] + block_bias)) << 1 |
-           spread(static_cast<std::uint64_t>(block[2] + block_bias)) << 2;
+    return spread(static_cast<std::uint64_t>(std::int64_t{block[0]} + block_bias)) |
+           spread(static_cast<std::uint64_t>(std::int64_t{block[1]} + block_bias)) << 1 |
+           spread(static_cast<std::uint64_t>(std::int64_t{block[2]} + block_bias)) << 2;
 }
 }  // namespace
 
@@ -182,6 +182,7 @@ void relabel(std::span<const Block> blocks, std::span<const int> previous, int r
     for (std::size_t k = 0; k < blocks.size(); ++k)
         if (previous[k] >= 0) shared[{owners[k], previous[k]}] += blocks[k].work;
     std::vector<std::pair<double, std::pair<int, int>>> overlaps;
+    overlaps.reserve(shared.size());
     for (const auto& [names, work] : shared) overlaps.push_back({work, names});
     std::stable_sort(overlaps.begin(), overlaps.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });

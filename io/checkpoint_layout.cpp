@@ -22,6 +22,7 @@ std::uint64_t checksum_of(const RunState& state) {
         hash.add(std::string_view(name));
         hash.add(value);
     }
+    for (const std::string& name : state.materials) hash.add(std::string_view(name));
     return hash.value();
 }
 
@@ -39,6 +40,8 @@ std::string read_checked_text(hid_t file, const std::string& path) {
     return text;
 }
 
+std::string material_attribute(std::uint64_t body) { return fmt::format("material_{}", body); }
+
 RunState read_run_state(hid_t file) {
     RunState state;
     const hdf5::Handle group = hdf5::open_group(file, "/state");
@@ -49,6 +52,9 @@ RunState read_run_state(hid_t file) {
     const hdf5::Handle numbers = hdf5::open_group(file, "/state/numbers");
     for (const std::string& name : hdf5::attribute_names(numbers))
         state.numbers[name] = hdf5::double_attribute(numbers, name);
+    if (hdf5::has_attribute(group, "bodies"))  // not in files of the first programs
+        for (std::uint64_t b = 0; b < hdf5::integer_attribute(group, "bodies"); ++b)
+            state.materials.push_back(hdf5::text_attribute(group, material_attribute(b)));
     if (checksum_of(state) != hdf5::integer_attribute(group, "xxh64"))
         throw std::runtime_error("checksum does not match");
     return state;
@@ -142,6 +148,10 @@ void write_run_state(hid_t file, const RunState& state) {
     hdf5::set_attribute(group, "version", state.version);
     const hdf5::Handle numbers = hdf5::create_group(file, "/state/numbers");
     for (const auto& [name, value] : state.numbers) hdf5::set_attribute(numbers, name, value);
+    if (!state.materials.empty())
+        hdf5::set_attribute(group, "bodies", static_cast<std::uint64_t>(state.materials.size()));
+    for (std::size_t b = 0; b < state.materials.size(); ++b)
+        hdf5::set_attribute(group, material_attribute(b), state.materials[b]);
     hdf5::set_attribute(group, "xxh64", checksum_of(state));
     write_checked_text(file, "/scene", state.scene_text);
     write_checked_text(file, "/resolved_scene", state.resolved_scene);
@@ -184,6 +194,8 @@ std::string serialized(const CheckpointLayout& layout) {
         out.add(name);
         out.add(value);
     }
+    out.add(static_cast<std::uint64_t>(state.materials.size()));
+    for (const std::string& name : state.materials) out.add(name);
     out.add(static_cast<std::uint64_t>(layout.sets.size()));
     for (const StoredSet& set : layout.sets) {
         out.add(set.name);
@@ -216,6 +228,8 @@ CheckpointLayout deserialized(const std::string& bytes) {
         std::string name = in.text();
         state.numbers[std::move(name)] = in.real();
     }
+    state.materials.resize(in.integer());
+    for (std::string& name : state.materials) name = in.text();
     layout.sets.resize(in.integer());
     for (StoredSet& set : layout.sets) {
         set.name = in.text();

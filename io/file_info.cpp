@@ -95,11 +95,11 @@ std::string describe_set(const std::filesystem::path& file, const StoredSet& set
     return text;
 }
 
-std::string verdict(bool intact) {
-    return intact ? "  checksums: all match\n" : "  checksums: DAMAGED, see above\n";
+FileDescription with_verdict(const std::string& text, bool intact) {
+    return {text + (intact ? "  checksums: all match\n" : "  checksums: DAMAGED, see above\n"), intact};
 }
 
-std::string describe_checkpoint(const std::filesystem::path& file) {
+FileDescription describe_checkpoint(const std::filesystem::path& file) {
     const CheckpointLayout layout = read_layout(file);
     const RunState& state = layout.state;
     std::string text = fmt::format("{}: checkpoint (format {}) of talus {}\n", file.string(),
@@ -108,10 +108,10 @@ std::string describe_checkpoint(const std::filesystem::path& file) {
     for (const auto& [name, value] : state.numbers) text += fmt::format("  {} = {}\n", name, value);
     bool intact = true;
     for (const StoredSet& set : layout.sets) text += describe_set(file, set, intact);
-    return text + verdict(intact);
+    return with_verdict(text, intact);
 }
 
-std::string describe_snapshot(const std::filesystem::path& path) {
+FileDescription describe_snapshot(const std::filesystem::path& path) {
     const hdf5::Handle file = hdf5::open_file(path, false);
     if (!hdf5::has_attribute(file, "format") || hdf5::text_attribute(file, "format") != "talus-snapshot")
         throw std::runtime_error(
@@ -135,7 +135,7 @@ std::string describe_snapshot(const std::filesystem::path& path) {
     }
     bool intact = true;
     text += describe_set(path, set, intact);
-    return text + verdict(intact);
+    return with_verdict(text, intact);
 }
 
 /// Adds all particles of a set to the hash, reading all its fields side by side.
@@ -175,7 +175,7 @@ void hash_set(const std::filesystem::path& file, const StoredSet& set, StateHash
 
 /// Runs an action of this one rank, its failures as those of input and output.
 template <class Action>
-std::string or_input_output_failure(const Action& action) {
+auto or_input_output_failure(const Action& action) {
     try {
         return action();
     } catch (const std::exception& failure) {
@@ -183,25 +183,29 @@ std::string or_input_output_failure(const Action& action) {
     }
 }
 
+/// The file itself, or the newest checkpoint of a folder.
+std::filesystem::path file_of(const std::filesystem::path& file_or_folder) {
+    if (std::filesystem::is_regular_file(file_or_folder)) return file_or_folder;
+    if (!std::filesystem::is_directory(file_or_folder))
+        throw std::runtime_error(fmt::format("{}: no such file", file_or_folder.string()));
+    const auto files = list_checkpoints(file_or_folder);
+    if (files.empty())
+        throw std::runtime_error(fmt::format("{}: no checkpoint in this folder", file_or_folder.string()));
+    return files.front();
+}
+
 }  // namespace
 
-std::string describe_file(const std::filesystem::path& file) {
+FileDescription describe_file(const std::filesystem::path& file_or_folder) {
     return or_input_output_failure([&] {
-        if (!std::filesystem::is_regular_file(file))
-            throw std::runtime_error(fmt::format("{}: no such file", file.string()));
+        const std::filesystem::path file = file_of(file_or_folder);
         return is_guarded(file) ? describe_checkpoint(file) : describe_snapshot(file);
     });
 }
 
 std::string hash_file(const std::filesystem::path& file_or_folder) {
     return or_input_output_failure([&] {
-        std::filesystem::path file = file_or_folder;
-        if (std::filesystem::is_directory(file)) {
-            const auto files = list_checkpoints(file);
-            if (files.empty())
-                throw std::runtime_error(fmt::format("{}: no checkpoint in this folder", file.string()));
-            file = files.front();
-        }
+        const std::filesystem::path file = file_of(file_or_folder);
         const CheckpointLayout layout = read_layout(file);
         StateHash hash;
         for (const StoredSet& set : layout.sets) hash_set(file, set, hash);

@@ -6,9 +6,14 @@
 /// cannot be understood.
 namespace talus {
 
-/// What is in a checkpoint or snapshot, as text of several lines: format, step, time, sets, fields with
-/// units, counts and ranges, and whether the checksums hold.
-std::string describe_file(const std::filesystem::path& file);
+/// What is in a checkpoint or snapshot.
+struct FileDescription {
+    /// Several lines: format, step, time, sets, fields with units, counts and ranges, whether checksums hold.
+    std::string text;
+    bool intact;  ///< all checksums hold
+};
+/// A folder means its newest checkpoint.
+FileDescription describe_file(const std::filesystem::path& file_or_folder);
 
 /// state_hash() of the state in a checkpoint; a folder means its newest one. Checksums are verified.
 std::string hash_file(const std::filesystem::path& file_or_folder);

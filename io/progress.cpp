@@ -25,7 +25,7 @@ void move_towards(double& average, double value) {
 }  // namespace
 
 std::string hours_minutes_seconds(double seconds) {
-    const auto whole = static_cast<std::int64_t>(std::min(seconds, 1e12) + 0.5);
+    const auto whole = std::llround(std::min(seconds, 1e12));
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 

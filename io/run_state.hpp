@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace talus {
 
@@ -15,6 +16,8 @@ struct RunState {
     std::string scene_text;      ///< the scene file, verbatim
     std::string resolved_scene;  ///< Scene::resolved()
     std::string version;         ///< of the program; for information only
+    /// Names of the bodies' materials, in order of bodies; empty: not known.
+    std::vector<std::string> materials;
     std::map<std::string, double> numbers;
 };
 

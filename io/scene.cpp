@@ -143,6 +143,9 @@ Scene Scene::parse(std::string text, const std::filesystem::path& file, bool qui
                             "override others)",
                             state->quick.origin, state->quick.found()));
         if (quick) merge(state->root, state->quick);
+    } else if (quick) {
+        throw SceneError(fmt::format(
+            "{}: quick (missing; there is no table [quick] with keys that override others)", file.string()));
     }
     long order = std::numeric_limits<long>::max() / 2;  // after all lines
     for (const std::string& assignment : overrides) apply_override(state->root, assignment, order++);

@@ -47,15 +47,15 @@ class Section {
                          std::int64_t min = std::numeric_limits<std::int64_t>::min(),
                          std::int64_t max = std::numeric_limits<std::int64_t>::max()) const;
     bool flag(std::string_view key, std::optional<bool> default_value = {}) const;
-    std::string text(std::string_view key, std::optional<std::string> default_value = {}) const;
+    std::string text(std::string_view key, const std::optional<std::string>& default_value = {}) const;
     /// One of `allowed`; returns the default or the first allowed word if the scene's is not.
     std::string choice(std::string_view key, std::initializer_list<std::string_view> allowed,
-                       std::optional<std::string> default_value = {}) const;
+                       const std::optional<std::string>& default_value = {}) const;
     /// `count` numbers (0: any count), each like number().
     std::vector<double> numbers(std::string_view key, std::string_view unit, std::size_t count,
-                                std::optional<std::vector<double>> default_value = {}) const;
+                                const std::optional<std::vector<double>>& default_value = {}) const;
     std::vector<std::string> texts(std::string_view key, std::size_t count,
-                                   std::optional<std::vector<std::string>> default_value = {}) const;
+                                   const std::optional<std::vector<std::string>>& default_value = {}) const;
 
     /// The table `key`; an absent one reads as empty.
     Section section(std::string_view key) const;
@@ -94,7 +94,7 @@ class Scene {
     static std::string read_text(const std::filesystem::path& file);
     /// `quick`: keys of the table [quick] override the others. `overrides`: "key.path=value" with a TOML
     /// value or bare words, stronger than [quick]. Throws SceneError on syntax errors, naming line and
-    /// column.
+    /// column, and if a scene without that table shall be quick.
     static Scene parse(std::string text, const std::filesystem::path& file, bool quick = false,
                        const std::vector<std::string>& overrides = {});
 

@@ -178,7 +178,7 @@ bool Section::flag(std::string_view key, std::optional<bool> default_value) cons
     return value;
 }
 
-std::string Section::text(std::string_view key, std::optional<std::string> default_value) const {
+std::string Section::text(std::string_view key, const std::optional<std::string>& default_value) const {
     SceneNode* found = find(key);
     std::string value = default_value.value_or("");
     if (found != nullptr) {
@@ -198,7 +198,7 @@ std::string Section::text(std::string_view key, std::optional<std::string> defau
 }
 
 std::string Section::choice(std::string_view key, std::initializer_list<std::string_view> words,
-                            std::optional<std::string> default_value) const {
+                            const std::optional<std::string>& default_value) const {
     std::string list;
     for (const std::string_view word : words) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word);
     SceneNode* found = find(key);
@@ -224,7 +224,7 @@ std::string Section::choice(std::string_view key, std::initializer_list<std::str
 }
 
 std::vector<double> Section::numbers(std::string_view key, std::string_view unit, std::size_t count,
-                                     std::optional<std::vector<double>> default_value) const {
+                                     const std::optional<std::vector<double>>& default_value) const {
     SceneNode* found = find(key);
     std::vector<double> values = default_value.value_or(std::vector<double>(count, 1.0));
     const std::string wanted =
@@ -250,7 +250,7 @@ std::vector<double> Section::numbers(std::string_view key, std::string_view unit
 }
 
 std::vector<std::string> Section::texts(std::string_view key, std::size_t count,
-                                        std::optional<std::vector<std::string>> default_value) const {
+                                        const std::optional<std::vector<std::string>>& default_value) const {
     SceneNode* found = find(key);
     std::vector<std::string> values = default_value.value_or(std::vector<std::string>(count));
     const std::string wanted =

@@ -256,6 +256,7 @@ void add_to_series(const std::filesystem::path& file, const std::filesystem::pat
     std::erase_if(entries, [&](const auto& entry) { return entry.second >= time || entry.first >= name; });
     entries.emplace_back(name, time);
     std::vector<std::string> lines;
+    lines.reserve(entries.size());
     for (const auto& [entry, when] : entries)
         lines.push_back(fmt::format(R"(    {{"name": "{}", "time": {}}})", entry, when));
     replace_file(series, fmt::format("{{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n{}\n  ]\n}}\n",

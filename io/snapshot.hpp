@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ struct SnapshotField {
     std::string name = {};          ///< snapshot_name(field) if empty
     std::string description = {};   ///< the field's if empty
 };
+
+/// Snapshots of a set are numbered with six digits, from 0 on.
+inline constexpr std::uint64_t most_snapshots = 1000000;
 
 /// The name a field has in snapshots: that of GADGET's family where there is one (Velocities, Masses), the
 /// field's words run together otherwise.

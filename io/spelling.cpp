@@ -30,6 +30,16 @@ std::string nearest_spelling(std::string_view word, const std::set<std::string>&
             nearest = candidate;
         }
     }
+    if (!nearest.empty()) return nearest;
+    std::size_t longest = 2;  // another form of the word, such as its plural: half of it begins the same
+    for (const std::string& candidate : known) {
+        const auto common = static_cast<std::size_t>(
+            std::mismatch(word.begin(), word.end(), candidate.begin(), candidate.end()).first - word.begin());
+        if (common > longest && 2 * common >= std::max(word.size(), candidate.size())) {
+            longest = common;
+            nearest = candidate;
+        }
+    }
     return nearest;
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace talus {
@@ -77,6 +79,29 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t\n") - first + 1);
 }
 
+/// k if a conversion multiplies by 10^k, to the rounding of UDUNITS' factors.
+std::optional<int> power_of_ten(const cv_converter* converter) {
+    const double factor = cv_convert_double(converter, 1);
+    if (cv_convert_double(converter, 0) != 0 || !(factor > 0)) return {};
+    const double exponent = std::round(std::log10(factor));
+    if (std::abs(factor / std::pow(10.0, exponent) - 1) > 1e-12) return {};
+    return static_cast<int>(exponent);
+}
+
+/// The double nearest to the number written in `digits` times 10^`power`: "50" and -6 make 5e-05, where the
+/// product of the doubles 50 and 1e-6 is another. Nothing if it is beyond the doubles.
+std::optional<double> shifted(std::string_view digits, int power) {
+    const auto e = std::min(digits.find_first_of("eE"), digits.size());
+    std::string_view exponent_text = digits.substr(std::min(e + 1, digits.size()));
+    if (exponent_text.starts_with('+')) exponent_text.remove_prefix(1);
+    int exponent = 0;
+    std::from_chars(exponent_text.data(), exponent_text.data() + exponent_text.size(), exponent);
+    const std::string text = fmt::format("{}e{}", digits.substr(0, e), exponent + power);
+    double value = 0;
+    if (std::from_chars(text.data(), text.data() + text.size(), value).ec != std::errc()) return {};
+    return value;
+}
+
 std::string expectation(std::string_view si_unit) {
     const std::string name = dimension_name(si_unit);
     return name.empty() ? fmt::format("[{}]", si_unit) : fmt::format("{} [{}]", name, si_unit);
@@ -117,6 +142,10 @@ double convert_to_si(std::string_view text, std::string_view si_unit) {
     const std::unique_ptr<cv_converter, decltype(&cv_free)> converter(
         ut_get_converter(found.get(), wanted.get()), &cv_free);
     if (converter == nullptr) throw UnitError(fmt::format("cannot convert '{}' to {}", text, si_unit));
+    const std::optional<int> power = power_of_ten(converter.get());
+    if (power)
+        if (const auto exact = shifted(rest.substr(0, static_cast<std::size_t>(end - rest.data())), *power))
+            return *exact;
     return cv_convert_double(converter.get(), value);
 }
 

@@ -26,35 +26,34 @@ bool has_fracture(const Setup& setup) {
 }
 }  // namespace
 
-void add_fields(ParticleSet& particles, const Setup& setup) {
+std::vector<NeededField> needed_fields(const Setup& setup) {
+    std::vector<NeededField> needed;
+    const auto need = [&](std::string_view model, std::initializer_list<const FieldInfo*> fields) {
+        for (const FieldInfo* info : fields) needed.push_back({info, model});
+    };
     const sph::Settings& sph = setup.sph;
-    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-             &field::velocity, &field::mass, &field::internal_energy, &field::smoothing_length, &field::body,
-             &field::acceleration, &field::specific_power, &field::predicted_velocity,
-             &field::predicted_energy, &field::predicted_density, &field::pressure, &field::sound_speed})
-        particles.add(*info);
     const bool continuity = sph.density == sph::DensityMethod::continuity;
-    if (continuity) particles.add(field::density);
-    if (continuity || sph.formulation == sph::Formulation::godunov) particles.add(field::velocity_gradient);
-    if (sph.variable_smoothing_length) particles.add(field::next_smoothing_length);
-    if (sph.formulation == sph::Formulation::godunov) {
-        particles.add(field::pressure_gradient);
-        particles.add(field::volume_gradient);
-    }
-    if (sph.formulation == sph::Formulation::standard) particles.add(field::viscous_speed);
-    if (sph.uses(sph::Interpolation::quintic)) particles.add(field::volume_curvature);
-    if (setup.gravity) {
-        particles.add(field::gravity_acceleration);
-        particles.add(field::gravity_potential);
-    }
-    if (has_strength(setup)) {
-        particles.add(field::deviatoric_stress);
-        particles.add(field::predicted_stress);
-    }
+    const bool godunov = sph.formulation == sph::Formulation::godunov;
+    need("SPH", {&field::velocity, &field::mass, &field::internal_energy, &field::smoothing_length,
+                 &field::body, &field::acceleration, &field::specific_power, &field::predicted_velocity,
+                 &field::predicted_energy, &field::predicted_density, &field::pressure, &field::sound_speed});
+    if (continuity) need("density by continuity", {&field::density});
+    if (godunov)
+        need("Godunov SPH", {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient});
+    else if (continuity)
+        need("density by continuity", {&field::velocity_gradient});
+    if (sph.variable_smoothing_length) need("variable smoothing length", {&field::next_smoothing_length});
+    if (!godunov) need("artificial viscosity", {&field::viscous_speed});
+    if (sph.uses(sph::Interpolation::quintic)) need("quintic interpolation", {&field::volume_curvature});
+    if (setup.gravity) need("self-gravity", {&field::gravity_acceleration, &field::gravity_potential});
+    if (has_strength(setup)) need("strength", {&field::deviatoric_stress, &field::predicted_stress});
     if (has_fracture(setup))
-        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-                 &field::damage, &field::flaw_threshold, &field::flaw_exponent, &field::flaw_count})
-            particles.add(*info);
+        need("fracture", {&field::damage, &field::flaw_threshold, &field::flaw_exponent, &field::flaw_count});
+    return needed;
+}
+
+void add_fields(ParticleSet& particles, const Setup& setup) {
+    for (const NeededField& needed : needed_fields(setup)) particles.add(*needed.info);
 }
 
 Simulation::Simulation(const Communicator& comm, Setup setup, ParticleSet particles)

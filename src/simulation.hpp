@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "comm/communicator.hpp"
@@ -33,7 +34,16 @@ struct Setup {
     int rebalance_interval = 10;  ///< steps between looks at the imbalance
 };
 
-/// Adds to a set the fields that the setup's models need, no more.
+/// A field and the model that asks for it, in words.
+struct NeededField {
+    const FieldInfo* info;
+    std::string_view model;
+};
+
+/// The fields that the setup's models need besides ids and positions, no more.
+std::vector<NeededField> needed_fields(const Setup& setup);
+
+/// Adds them to a set.
 void add_fields(ParticleSet& particles, const Setup& setup);
 
 /// Totals over all particles, exact sums rounded once: the same bits on any number of ranks.

@@ -68,7 +68,18 @@ def scalar(value):
     return value.decode() if isinstance(value, bytes) else value
 
 
+class UnreadableFile(Exception):
+    """A file that is damaged or not what its name says."""
+
+
 def read_snapshot(path, time=None):
+    try:
+        return read_open_snapshot(path, time)
+    except (OSError, KeyError) as failure:  # h5py's, of a file cut short or overwritten
+        raise UnreadableFile(f"{path}: cannot be read as a snapshot ({str(failure).splitlines()[0]})") from failure
+
+
+def read_open_snapshot(path, time):
     with h5py.File(path, "r") as file:
         header = file["Header"].attrs if "Header" in file else {}
         group = file["PartType0"]

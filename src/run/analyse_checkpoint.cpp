@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "io/checkpoint.hpp"
 #include "src/analysis/analysis.hpp"
 #include "src/run/commands.hpp"
+#include "src/run/restart.hpp"
 #include "src/setup/scene_setup.hpp"
 
 namespace talus {
@@ -14,13 +14,12 @@ int analyse_checkpoint(const Communicator& comm, const RunOptions& options) {
         throw SceneError(
             fmt::format("{}: there is no [analysis] table with fragments = true", scene.file().string()));
     const std::filesystem::path folder = output_folder(scene, options);
-    const std::filesystem::path file =
-        find_checkpoint(comm, options.restart.empty() ? "latest" : options.restart, folder);
-    ParticleSet particles = empty_particles(setup);
-    const RunState state = read_checkpoint(comm, file, {&particles});
-    const Breakup breakup = analyse(comm, setup.analysis, setup.simulation.box, particles);
-    write_breakup(comm, folder, state.time, setup.analysis, breakup);
-    if (comm.is_root()) fmt::print("{} (time {} s): {}\n", file.string(), state.time, describe(breakup));
+    const Restart found =
+        read_restart(comm, options.restart.empty() ? "latest" : options.restart, folder, setup);
+    const Breakup breakup = analyse(comm, setup.analysis, setup.simulation.box, found.particles);
+    write_breakup(comm, folder, found.state.time, setup.analysis, breakup);
+    if (comm.is_root())
+        fmt::print("{} (time {} s): {}\n", found.file.string(), found.state.time, describe(breakup));
     return exit_done;
 }
 

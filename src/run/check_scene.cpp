@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <numbers>
 #include <string_view>
 
+#include "io/progress.hpp"
 #include "src/run/commands.hpp"
+#include "src/run/scene_checks.hpp"
 #include "src/run/warnings.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -13,11 +17,16 @@ namespace talus {
 
 namespace {
 
-void print_fields(const ParticleSet& particles) {
-    fmt::print("\nfields ({} bytes per particle):\n", particles.bytes_per_particle());
+void print_fields(const ParticleSet& particles, const Setup& setup) {
+    const std::vector<NeededField> needed = needed_fields(setup);
+    fmt::print("\nfields ({} bytes per particle), which model asks for them, what they are:\n",
+               particles.bytes_per_particle());
     for (const Column& column : particles.columns()) {
+        const auto why = std::find_if(needed.begin(), needed.end(),
+                                      [&](const NeededField& one) { return one.info == column.info; });
         const std::size_t bytes = column.components.size() * column.value_size();
-        fmt::print("  {:>4} B  {:<24} {:<7} {:<6} {}\n", bytes, column.info->name,
+        fmt::print("  {:>4} B  {:<24} {:<25} {:<6} {:<6} {}\n", bytes, column.info->name,
+                   why == needed.end() ? "every set" : why->model,
                    column.info->role == Role::state ? "state" : "work",
                    column.info->reach == Reach::halo ? "copied" : "", column.info->description);
     }
@@ -62,6 +71,25 @@ void print_impact(const Impact& impact, const SceneSetup& setup) {
                impact.escape_speed, impact.contact.speed / impact.escape_speed, impact.speed_at_infinity);
 }
 
+/// Memory of the largest rank, measured.
+struct Memory {
+    double before_particles, after_a_step;  ///< [bytes]
+};
+
+void print_memory(const Memory& memory, const ParticleSet& particles, std::uint64_t own,
+                  std::uint64_t copies) {
+    std::size_t copied = 0;
+    for (const Column& column : particles.columns())
+        if (column.info->reach == Reach::halo) copied += column.components.size() * column.value_size();
+    const double fields = static_cast<double>(own * particles.bytes_per_particle() + copies * copied);
+    const double buffers = std::max(0.0, memory.after_a_step - memory.before_particles - fields);
+    fmt::print(
+        "memory of the largest rank after a step, without files: {:.1f} MB; the program itself {:.1f} MB, "
+        "fields of {} own "
+        "particles and {} copies {:.1f} MB, buffers of the loops and messages {:.1f} MB\n",
+        memory.after_a_step / 1e6, memory.before_particles / 1e6, own, copies, fields / 1e6, buffers / 1e6);
+}
+
 /// Looks through the equation of state's plane where it can be unphysical.
 void print_scan(const Material& material) {
     const auto* tillotson = std::get_if<Tillotson>(&material.eos);
@@ -87,12 +115,16 @@ double measured_step_seconds(Simulation& simulation) {
 int check_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
     const SceneSetup setup = read_scene(comm, scene);
+    check_plan(scene, setup, setup.output.end_time);
+    Memory memory{static_cast<double>(comm.all_max(peak_memory())), 0};
     Simulation simulation(comm, setup.simulation, make_particles(comm, setup));
+    check_box(scene, simulation);
     simulation.start();
     const double first_step = simulation.time_step();
     const auto largest = comm.all_max(static_cast<std::uint64_t>(simulation.particles().size()));
     const auto largest_halo = comm.all_max(static_cast<std::uint64_t>(simulation.particles().halo_size()));
     const double seconds = measured_step_seconds(simulation);
+    memory.after_a_step = static_cast<double>(comm.all_max(peak_memory()));
     if (!comm.is_root()) return exit_done;
 
     fmt::print("{}\n\n{}\n", setup.title, scene.resolved());
@@ -101,17 +133,17 @@ int check_scene(const Communicator& comm, const RunOptions& options) {
     fmt::print("equations of state:\n");
     for (const Material& material : setup.simulation.materials) print_scan(material);
     for (const std::string& warning : warnings(setup)) fmt::print("note: {}\n", warning);
-    print_fields(simulation.particles());
-    const double bytes = static_cast<double>(simulation.particles().bytes_per_particle());
+    print_fields(simulation.particles(), setup.simulation);
     const double steps = setup.output.end_time / first_step;
-    fmt::print("\nparticles: {} on {} ranks, at most {} own and {} copies on a rank, {:.3g} MB of fields\n",
-               simulation.total_particles(), comm.size(), largest, largest_halo,
-               bytes * static_cast<double>(largest + largest_halo) / 1e6);
-    fmt::print("first time step: {:.4g} s (limited by {} at particle {}); about {:.0f} steps to {} s\n",
-               first_step, simulation.step_limit().reason, simulation.step_limit().id, steps,
-               setup.output.end_time);
-    fmt::print("estimated cost: {:.3g} s a step on {} ranks, {:.3g} minutes in all\n", seconds, comm.size(),
-               seconds * steps / 60);
+    fmt::print("\nparticles: {} on {} ranks\n", simulation.total_particles(), comm.size());
+    print_memory(memory, simulation.particles(), largest, largest_halo);
+    fmt::print(
+        "first time step: {:.4g} s (limited by {} at particle {}); {:.0f} such steps to {} s, more if "
+        "matter is compressed, heated or torn\n",
+        first_step, simulation.step_limit().reason, simulation.step_limit().id, std::ceil(steps),
+        setup.output.end_time);
+    fmt::print("estimated cost: {:.3g} s a step on {} ranks, {:.3g} minutes for so many steps\n", seconds,
+               comm.size(), seconds * steps / 60);
     return exit_done;
 }
 

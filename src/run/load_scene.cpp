@@ -21,7 +21,10 @@ Scene load_scene(const Communicator& comm, const RunOptions& options) {
 }
 
 std::filesystem::path output_folder(const Scene& scene, const RunOptions& options) {
-    if (!options.out.empty()) return options.out;
+    if (!options.out.empty()) {
+        const std::filesystem::path out = options.out.lexically_normal();
+        return out.has_filename() ? out : out.parent_path();  // without the separator at its end
+    }
     const std::filesystem::path file = std::filesystem::absolute(scene.file());
     const bool in_folder = file.filename() == "scene.toml";
     return std::filesystem::path("out") / (in_folder ? file.parent_path().filename() : file.stem());

@@ -61,6 +61,7 @@ RunState run_state(const Simulation& simulation, const Scene& scene) {
     state.scene_text = scene.text();
     state.resolved_scene = scene.resolved();
     state.version = TALUS_VERSION;
+    for (const Material& material : simulation.setup().materials) state.materials.push_back(material.name);
     return state;
 }
 
@@ -70,13 +71,29 @@ bool holds_results(const std::filesystem::path& folder) {
            !list_checkpoints(folder).empty();
 }
 
+bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder) {
+    const std::filesystem::path relative =
+        std::filesystem::canonical(path).lexically_relative(std::filesystem::canonical(folder));
+    return !relative.empty() && *relative.begin() != "..";
+}
+
 /// Moves a folder with results to the first free name among folder.1, folder.2, ...; returns that name.
-std::filesystem::path set_aside(const std::filesystem::path& folder) {
+/// Throws if that would move the working folder or the scene.
+std::filesystem::path set_aside(const std::filesystem::path& folder, const std::filesystem::path& scene) {
+    const auto refuse = [&](std::string_view why) {
+        throw std::runtime_error(fmt::format(
+            "{}: holds the results of an earlier run and {}; move them away or name another --out",
+            folder.string(), why));
+    };
+    if (is_within(std::filesystem::current_path(), folder)) refuse("is the working folder");
+    if (is_within(scene, folder)) refuse("the scene");
     for (int n = 1;; ++n) {
         std::filesystem::path aside = folder;
         aside += fmt::format(".{}", n);
         if (std::filesystem::exists(aside)) continue;
-        std::filesystem::rename(folder, aside);
+        std::error_code failure;
+        std::filesystem::rename(folder, aside, failure);
+        if (failure) refuse(fmt::format("cannot be renamed to {} ({})", aside.string(), failure.message()));
         return aside;
     }
 }
@@ -95,10 +112,11 @@ Recorder::Recorder(const Communicator& comm, std::filesystem::path folder, const
       folder_(std::move(folder)),
       scene_(scene),
       setup_(setup),
+      is_new_(is_new),
       files_(std::make_unique<Files>()) {
     agree_on_root(comm_, [&] {
         std::filesystem::path aside;
-        if (is_new && holds_results(folder_)) aside = set_aside(folder_);
+        if (is_new_ && holds_results(folder_)) aside = set_aside(folder_, scene_.file());
         std::filesystem::create_directories(folder_);
         const auto console = std::make_shared<spdlog::sinks::stdout_color_sink_mt>();
         const auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>((folder_ / "log.txt").string());
@@ -112,23 +130,17 @@ Recorder::Recorder(const Communicator& comm, std::filesystem::path folder, const
 
 Recorder::~Recorder() = default;
 
-std::unique_ptr<Simulation> Recorder::restore(const std::string& what) {
-    last_checkpoint_ = find_checkpoint(comm_, what, folder_);
-    ParticleSet particles = empty_particles(setup_);
-    const RunState state = read_checkpoint(comm_, last_checkpoint_, {&particles});
-    if (comm_.is_root()) {
-        files_->log->info("going on from {} (step {}, time {} s)", last_checkpoint_.string(), state.step,
-                          state.time);
-        if (state.resolved_scene != scene_.resolved())
-            files_->log->warn("the scene differs from the one that wrote this checkpoint");
-    }
-    auto simulation = std::make_unique<Simulation>(comm_, setup_.simulation, std::move(particles));
-    simulation->resume(state.time, state.time_step, state.step);
-    return simulation;
+void Recorder::go_on_from(const Restart& restart) {
+    last_checkpoint_ = restart.file;
+    checkpoint_seconds_ = restart.seconds;
+    if (!comm_.is_root()) return;
+    files_->log->info("going on from {} (step {}, time {} s)", restart.file.string(), restart.state.step,
+                      restart.state.time);
+    if (restart.state.resolved_scene != scene_.resolved())
+        files_->log->warn("the scene differs from the one that wrote this checkpoint");
 }
 
 void Recorder::begin(Simulation& simulation, double end_time) {
-    const bool is_new = simulation.step_count() == 0;
     first_step_ = simulation.step_count();
     time_before_ = simulation.time();
     if (comm_.is_root()) {
@@ -142,8 +154,8 @@ void Recorder::begin(Simulation& simulation, double end_time) {
         for (const std::string& warning : warnings(setup_)) files_->log->warn("note: {}", warning);
     files_->diagnostics = std::make_unique<CsvWriter>(
         comm_, folder_ / "diagnostics.csv", diagnostics_columns(setup_.simulation),
-        is_new ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));
-    if (is_new) {
+        is_new_ ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));
+    if (is_new_) {
         write_diagnostics(simulation);
         write_snapshot_now(simulation, 0);
         write_checkpoint_now(simulation);
@@ -159,7 +171,7 @@ void Recorder::after_step(Simulation& simulation) {
     if (fell_due(time_before_, time, setup_.output.diagnostics_interval)) write_diagnostics(simulation);
     if (const double interval = setup_.output.snapshot_interval;
         interval > 0 && fell_due(time_before_, time, interval))
-        write_snapshot_now(simulation, static_cast<int>(std::floor(time / interval)));
+        write_snapshot_now(simulation, static_cast<std::uint64_t>(time / interval));
     const auto now = std::chrono::steady_clock::now();
     if (setup_.output.checkpoint_interval > 0) {
         const std::chrono::duration<double> since = now - last_checkpoint_time_;
@@ -185,11 +197,18 @@ void Recorder::stop_early(Simulation& simulation, const std::string& why) {
 
 void Recorder::finish(Simulation& simulation) {
     files_->progress->finish();
+    if (!is_new_ && simulation.step_count() == first_step_) {
+        // What is there is complete; work fields, which snapshots hold, have no values before a step.
+        if (comm_.is_root())
+            files_->log->info("nothing left to do at step {}, time {} s", first_step_, simulation.time());
+        write_analysis(simulation);
+        return;
+    }
     write_checkpoint_now(simulation);
     if (last_snapshot_step_ != simulation.step_count()) {  // the last state, due or not
         const double interval = setup_.output.snapshot_interval;
         write_snapshot_now(simulation,
-                           1 + (interval > 0 ? static_cast<int>(simulation.time() / interval) : 0));
+                           1 + (interval > 0 ? static_cast<std::uint64_t>(simulation.time() / interval) : 0));
     }
     write_analysis(simulation);
     print_summary(simulation);
@@ -209,13 +228,15 @@ std::string Recorder::after_failure(const Simulation& simulation) {
 }
 
 void Recorder::write_checkpoint_now(Simulation& simulation) {
+    const auto began = std::chrono::steady_clock::now();
     const RunState state = run_state(simulation, scene_);
     write_checkpoint(comm_, folder_, state, {&simulation.particles()});
     last_checkpoint_ = find_checkpoint(comm_, "latest", folder_);
     last_checkpoint_time_ = std::chrono::steady_clock::now();
+    checkpoint_seconds_ = std::chrono::duration<double>(last_checkpoint_time_ - began).count();
 }
 
-void Recorder::write_snapshot_now(Simulation& simulation, int index) {
+void Recorder::write_snapshot_now(Simulation& simulation, std::uint64_t index) {
     last_snapshot_step_ = simulation.step_count();
     const ParticleSet& particles = simulation.particles();
     std::vector<SnapshotField> fields;
@@ -225,8 +246,7 @@ void Recorder::write_snapshot_now(Simulation& simulation, int index) {
         if (particles.has(*info)) fields.push_back({.field = info});
     fields.push_back({.field = particles.has(field::density) ? &field::density : &field::predicted_density,
                       .name = snapshot_name(field::density)});
-    write_snapshot(comm_, folder_, static_cast<std::uint64_t>(index), run_state(simulation, scene_),
-                   particles, fields);
+    write_snapshot(comm_, folder_, index, run_state(simulation, scene_), particles, fields);
 }
 
 void Recorder::write_analysis(const Simulation& simulation) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "io/scene.hpp"
+#include "src/run/restart.hpp"
 #include "src/setup/scene_setup.hpp"
 #include "src/simulation.hpp"
 
@@ -22,8 +23,8 @@ class Recorder {
 
     const std::filesystem::path& folder() const { return folder_; }
 
-    /// A simulation as its checkpoint left it. `what`: see find_checkpoint().
-    std::unique_ptr<Simulation> restore(const std::string& what);
+    /// Notes that the run is not new: it goes on from the state of a checkpoint.
+    void go_on_from(const Restart& restart);
     /// Before the first step: describes the run, and for a new one writes its first state.
     void begin(Simulation& simulation, double end_time);
     void after_step(Simulation& simulation);
@@ -37,12 +38,14 @@ class Recorder {
     std::string after_failure(const Simulation& simulation);
     /// Longest wall time of a step so far [s].
     double longest_step() const { return longest_step_; }
+    /// Wall time of writing the last checkpoint, or of reading the one that the run goes on from [s].
+    double checkpoint_seconds() const { return checkpoint_seconds_; }
 
   private:
     struct Files;
 
     void write_checkpoint_now(Simulation& simulation);
-    void write_snapshot_now(Simulation& simulation, int index);
+    void write_snapshot_now(Simulation& simulation, std::uint64_t index);
     void write_analysis(const Simulation& simulation);
     void write_diagnostics(Simulation& simulation);
     void print_summary(Simulation& simulation);
@@ -53,10 +56,11 @@ class Recorder {
     std::filesystem::path folder_;
     const Scene& scene_;
     const SceneSetup& setup_;
+    bool is_new_;
     std::unique_ptr<Files> files_;
     std::filesystem::path last_checkpoint_;
     std::chrono::steady_clock::time_point last_checkpoint_time_, step_began_, began_;
-    double time_before_ = 0, longest_step_ = 0, first_energy_ = 0;
+    double time_before_ = 0, longest_step_ = 0, checkpoint_seconds_ = 0, first_energy_ = 0;
     std::uint64_t first_step_ = 0, last_snapshot_step_ = ~std::uint64_t{0};
 };
 

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "src/run/commands.hpp"
 #include "src/run/recorder.hpp"
+#include "src/run/restart.hpp"
+#include "src/run/scene_checks.hpp"
 #include "src/run/stop_request.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -20,33 +24,39 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
     const SceneSetup setup = read_scene(comm, scene);
     const double end_time = options.until.value_or(setup.output.end_time);
-    const bool is_new = options.restart.empty();
-    Recorder recorder(comm, output_folder(scene, options), scene, setup, is_new);
-    StopRequest stop(comm, recorder.folder(), options.walltime);
+    check_plan(scene, setup, end_time);
+    const std::filesystem::path folder = output_folder(scene, options);
+    StopRequest stop(comm, folder, options.walltime);
 
-    std::unique_ptr<Simulation> simulation;
-    if (is_new) {
-        simulation = std::make_unique<Simulation>(comm, setup.simulation, make_particles(comm, setup));
-        simulation->start();
-        recorder.begin(*simulation, end_time);
+    // The folder is touched only once it is known that the run can begin.
+    std::optional<Restart> restart;
+    if (!options.restart.empty()) restart = read_restart(comm, options.restart, folder, setup);
+    Simulation simulation(comm, setup.simulation,
+                          restart ? std::move(restart->particles) : make_particles(comm, setup));
+    check_box(scene, simulation);
+    Recorder recorder(comm, folder, scene, setup, !restart);
+    if (restart) {
+        recorder.go_on_from(*restart);
+        simulation.resume(restart->state.time, restart->state.time_step, restart->state.step);
     } else {
-        simulation = recorder.restore(options.restart);
-        recorder.begin(*simulation, end_time);
+        simulation.start();
     }
+    recorder.begin(simulation, end_time);
     try {
-        while (!finished(*simulation, end_time, options)) {
-            if (const std::string why = stop.reason(recorder.longest_step()); !why.empty()) {
-                recorder.stop_early(*simulation, why);
+        while (!finished(simulation, end_time, options)) {
+            if (const std::string why = stop.reason(recorder.longest_step(), recorder.checkpoint_seconds());
+                !why.empty()) {
+                recorder.stop_early(simulation, why);
                 return exit_stopped_early;
             }
-            simulation->step();
-            recorder.after_step(*simulation);
+            simulation.step();
+            recorder.after_step(simulation);
         }
     } catch (const AgreedError& error) {
         throw AgreedError(error.exit_code,
-                          fmt::format("{}\n{}", error.what(), recorder.after_failure(*simulation)));
+                          fmt::format("{}\n{}", error.what(), recorder.after_failure(simulation)));
     }
-    recorder.finish(*simulation);
+    recorder.finish(simulation);
     return exit_done;
 }
 

@@ -12,25 +12,23 @@ static_assert(std::atomic<int>::is_always_lock_free);
 enum Reason { none, signalled, stop_file, out_of_time };
 }  // namespace
 
-StopRequest::StopRequest(const Communicator& comm, std::filesystem::path folder, double walltime)
+StopRequest::StopRequest(const Communicator& comm, const std::filesystem::path& folder, double walltime)
     : comm_(comm),
-      stop_file_(std::move(folder) / "stop"),
+      stop_file_(folder / "stop"),
       walltime_(walltime),
       start_(std::chrono::steady_clock::now()) {
     signals_received = 0;
     std::signal(SIGUSR1, [](int) { signals_received.fetch_add(1); });
 }
 
-std::string StopRequest::reason(double step_seconds) {
+std::string StopRequest::reason(double step_seconds, double checkpoint_seconds) {
     int found = none;
     if (comm_.is_root()) {
-        constexpr double checkpoint_seconds = 5;
         const double elapsed =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         std::error_code unreadable;
         if (std::filesystem::exists(stop_file_, unreadable)) found = stop_file;
-        if (elapsed + 3 * step_seconds + std::min(checkpoint_seconds, 0.05 * walltime_) > walltime_)
-            found = out_of_time;
+        if (elapsed + 3 * step_seconds + 2 * checkpoint_seconds > walltime_) found = out_of_time;
     }
     if (signals_received.load() > 0) found = signalled;
     switch (comm_.all_max(found)) {

@@ -12,11 +12,12 @@ namespace talus {
 class StopRequest {
   public:
     /// Installs the signal handler. `walltime` [s] is counted from now.
-    StopRequest(const Communicator& comm, std::filesystem::path folder, double walltime);
+    StopRequest(const Communicator& comm, const std::filesystem::path& folder, double walltime);
 
-    /// Why to stop, the same on every rank; empty: go on. `step_seconds` is the longest wall time between two
-    /// calls; the wall time is said to run out while there is still time for a few of them. Collective.
-    std::string reason(double step_seconds);
+    /// Why to stop, the same on every rank; empty: go on. The wall time is said to run out while there is
+    /// still room for three times `step_seconds`, the longest wall time between two calls, and twice
+    /// `checkpoint_seconds`, that of writing a checkpoint. The root's values count. Collective.
+    std::string reason(double step_seconds, double checkpoint_seconds);
 
   private:
     const Communicator& comm_;

@@ -1,6 +1,6 @@
 """What the program does when things go wrong: clear messages, agreed exit codes on all ranks, nothing lost.
 
-usage: program.py PROGRAM MPIRUN RUNS_FOLDER
+usage: program.py PROGRAM MPIRUN RUNS_FOLDER [-k PATTERN]
 Exit codes: 0 done, 1 run-time failure, 2 bad scene or usage, 3 input/output, 75 stopped early with a checkpoint.
 """
 import os
@@ -24,9 +24,9 @@ def command(arguments, ranks):
     return line + [str(a) for a in arguments]
 
 
-def talus(*arguments, ranks=2):
+def talus(*arguments, ranks=2, cwd=None):
     return subprocess.run(command(arguments, ranks), capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          env=ENVIRONMENT, timeout=240)
+                          env=ENVIRONMENT, timeout=240, cwd=cwd)
 
 
 class Case(unittest.TestCase):
@@ -75,12 +75,34 @@ class BadInput(Case):
                      "--set", "gravity.theta=0.5")
         self.assert_fails(done, 2, r"gravity\.theta")
 
+    def test_scenes_that_cannot_run(self):
+        wave, tube = RUNS / "acoustic_wave", RUNS / "sod_tube"
+        reach = r"scene\.toml:\d+: box\.upper = .*along x, where it is closed, shorter than the interaction radius"
+        for command, ranks in (("run", 2), ("check", 0)):
+            for scene, setting, *patterns in (
+                    (wave, "body[0].particles=3", reach), (wave, "body[0].particles=1", reach),
+                    (tube, "body[1].pressure=-1", r"--set body\[1\]\.pressure: .*no sound speed"),
+                    (tube, "output.snapshots=1e-12", r"--set output\.snapshots: .*at least [0-9.e-]+ s")):
+                options = [command, scene, "--quick", "--set", setting]
+                done = talus(*options, *(["--out", self.out] if command == "run" else []), ranks=ranks)
+                self.assert_fails(done, 2, *patterns)
+                self.assertNotIn("MPI_ABORT", done.stderr)
+        self.assertFalse(self.out.exists(), "a scene that cannot run leaves no folder")
+        text = (tube / "scene.toml").read_text()
+        self.assert_fails(talus("check", self.scene(text[:text.index("[quick]")]), "--quick", ranks=0), 2,
+                          r"scene\.toml: quick \(missing")
+
     def test_missing_files(self):
         self.assert_fails(talus("run", self.folder / "nowhere"), 2, "nowhere")
         done = talus("run", SCENE, "--quick", "--set", "body[0].material=cheese", "--out", self.out)
         self.assert_fails(done, 2, "cheese", "materials/cheese.toml")
-        self.assert_fails(talus("hash", self.folder / "none.h5", ranks=0), 3, "none.h5")
+        for command in ("hash", "info"):
+            done = talus(command, self.folder / "none.h5", ranks=0)
+            self.assert_fails(done, 3, "none.h5: no such file")
+            self.assertEqual(done.stderr.count("none.h5"), 1)
+            self.assert_fails(talus(command, self.folder, ranks=0), 3, "no checkpoint in this folder")
         self.assert_fails(talus("run", SCENE, "--quick", "--restart", "latest", "--out", self.out), 3, "checkpoint")
+        self.assertFalse(self.out.exists(), "a run that cannot begin leaves no folder")
 
     def test_a_shape_file_that_is_not_closed(self):
         scene = (RUNS / "bilobed_impact" / "scene.toml").read_text()
@@ -94,12 +116,48 @@ class BadInput(Case):
     def test_usage(self):
         self.assert_fails(talus("run", ranks=0), 2, "scene")
         self.assert_fails(talus("run", SCENE, "--walltime", "soon"), 2, "soon")
-        self.assert_fails(talus("run", SCENE, "--until", "3 kg"), 2, "3 kg")
+        for option, values in (("--until", ("3 kg", "-1", "0", "1e", "1e999", "nan", "")),
+                               ("--steps", ("-1", "1.5", "many", "99999999999999999999"))):
+            for value in values:
+                done = talus("run", SCENE, "--quick", option, value, "--out", self.out, ranks=0)
+                self.assert_fails(done, 2, f"{option}.*{value}")
+                self.assertNotIn("stod", done.stderr)
+        self.assert_fails(talus("frob", SCENE), 2, "frob", "allowed: analyse, check, hash, info, run")
+        self.assert_fails(talus("chekc", SCENE, ranks=0), 2, "chekc", r"did you mean check\?")
+        self.assert_fails(talus("check", "--set", "seed=3", "--set", "dimension=4", SCENE, ranks=0), 2,
+                          "--set dimension: dimension = 4")
 
     def test_output_that_cannot_be_written(self):
         blocker = self.folder / "file"
         blocker.write_text("not a folder")
         self.assert_fails(talus("run", SCENE, "--quick", "--out", blocker / "out"), 3, "file")
+
+
+    def test_a_checkpoint_of_another_scene(self):
+        self.assertEqual(talus("run", RUNS / "sod_tube", "--quick", "--steps", "2", "--out", self.out).returncode, 0)
+        before = self.hash(self.out)
+        for ranks in (1, 3):
+            done = talus("run", RUNS / "wall_shock", "--quick", "--restart", "latest", "--out", self.out, ranks=ranks)
+            self.assert_fails(done, 3, r"checkpoint_000000002\.h5: is of a scene of 2 bodies \(gas, gas\), "
+                              r"this one has 1 body")
+        self.assertEqual(self.hash(self.out), before)
+
+
+class Check(Case):
+    def test_memory_is_told_by_field_and_model_and_adds_up(self):
+        done = talus("check", RUNS / "rubber_rings", "--quick")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        total = int(re.search(r"fields \((\d+) bytes per particle\)", done.stdout).group(1))
+        fields = re.findall(r"^ +(\d+) B  (\w+) +([\w ]+?)  +(state|work) ", done.stdout, re.MULTILINE)
+        self.assertEqual(sum(int(size) for size, *_ in fields), total)
+        self.assertIn(("deviatoric_stress", "strength"), [(name, model) for _, name, model, _ in fields])
+        memory = re.search(r"largest rank after a step, without files: ([\d.]+) MB; the program itself ([\d.]+) MB, "
+                           r"fields of (\d+) own particles and (\d+) copies ([\d.]+) MB", done.stdout)
+        whole, program, own, copies, data = map(float, memory.groups())
+        self.assertGreater(copies, 0)
+        self.assertGreater(program, 1)
+        self.assertGreaterEqual(whole, program)
+        self.assertAlmostEqual(data, own * total / 1e6, delta=copies * total / 1e6 + 0.1)
 
 
 class RunTimeFailures(Case):
@@ -157,6 +215,25 @@ class EarlyStops(Case):
         self.assertEqual(talus("hash", self.out, ranks=0).returncode, 0)
 
 
+class Restarts(Case):
+    def files(self):
+        return {path.name: path.read_bytes() for path in self.out.iterdir() if path.name != "log.txt"}
+
+    def test_one_with_nothing_left_to_do_changes_nothing(self):
+        for steps in (0, 4):  # no step at all, and some
+            done = talus("run", RUNS / "sod_tube", "--quick", "--steps", steps, "--out", self.out)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            before = self.files()
+            self.assertTrue([name for name in before if name.endswith(".hdf")])
+            done = talus("run", RUNS / "sod_tube", "--quick", "--steps", steps, "--out", self.out,
+                         "--restart", "latest", ranks=3)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertIn("nothing left to do", done.stdout)
+            self.assertEqual(before.keys(), self.files().keys())
+            for name, content in self.files().items():
+                self.assertTrue(content == before[name], name + " has changed")
+
+
 class DamagedCheckpoints(Case):
     def test_a_flipped_byte_is_refused_and_the_previous_checkpoint_offered(self):
         for steps, options in [(3, []), (6, ["--restart", "latest"])]:
@@ -165,15 +242,29 @@ class DamagedCheckpoints(Case):
         newest = max(self.out.glob("checkpoint_*.h5"))
         content = bytearray(newest.read_bytes())
         content[len(content) // 2] ^= 1
+        self.assertEqual(talus("info", self.out, ranks=0).returncode, 0)
         newest.write_bytes(content)
+        self.assert_fails(talus("info", self.out, ranks=0), 3, re.escape(newest.name), "DAMAGED")
         done = talus("run", SCENE, "--quick", "--steps", "8", "--out", self.out, "--restart", "latest")
         self.assert_fails(done, 3, newest.name, r"checkpoint_000000003\.h5")
 
     def test_an_earlier_run_is_kept(self):
-        for _ in range(2):
-            self.assertEqual(talus("run", SCENE, "--quick", "--steps", "2", "--out", self.out).returncode, 0)
-        self.assertEqual(self.hash(self.out), self.hash(self.folder / "out.1"))
+        for out in (self.out, f"{self.out}/", f"{self.folder}/./out//"):
+            done = talus("run", RUNS / "sod_tube", "--quick", "--steps", "2", "--out", out, ranks=0)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        for aside in ("out.1", "out.2"):
+            self.assertEqual(self.hash(self.out), self.hash(self.folder / aside))
+
+    def test_neither_the_working_folder_nor_the_scene_is_moved(self):
+        scene = self.scene((RUNS / "sod_tube" / "scene.toml").read_text())
+        options = ["run", scene, "--quick", "--steps", "1", "--out"]
+        first = talus(*options, ".", ranks=0, cwd=self.folder)
+        self.assertEqual(first.returncode, 0, first.stdout + first.stderr)
+        before = self.hash(self.folder)
+        self.assert_fails(talus(*options, ".", cwd=self.folder), 3, "is the working folder", "name another --out")
+        self.assert_fails(talus(*options, self.folder, ranks=0), 3, "the scene", "name another --out")
+        self.assertEqual(self.hash(self.folder), before)
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0]], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)

@@ -6,12 +6,14 @@
 #include <fstream>
 #include <iterator>
 
+#include "agreed_failure.hpp"
 #include "io/hashing.hpp"
 #include "random_particles.hpp"
 
 namespace talus {
 namespace {
 
+using testing::agreed_failure;
 using testing::random_set;
 using testing::SharedFolder;
 using testing::some_state;
@@ -21,20 +23,6 @@ constexpr std::uint64_t count = 3 * 4096 + 17;
 std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// The message of the AgreedError that `action` throws; checks that every rank gets the same.
-template <class Action>
-std::string agreed_failure(const Communicator& comm, const Action& action) {
-    std::string message = "nothing thrown";
-    try {
-        action();
-    } catch (const AgreedError& failure) {
-        message = failure.what();
-        EXPECT_EQ(failure.exit_code, 3);
-    }
-    EXPECT_EQ(message, comm.all_broadcast(message));
-    return message;
 }
 
 ParticleSet empty_set(int dimension = 3, const std::string& name = "rock") {
@@ -64,6 +52,7 @@ TEST(Checkpoint, RoundTripIsExact) {
         EXPECT_EQ(again.scene_text, state.scene_text);
         EXPECT_EQ(again.resolved_scene, state.resolved_scene);
         EXPECT_EQ(again.numbers, state.numbers);
+        EXPECT_EQ(again.materials, state.materials);
         EXPECT_TRUE(std::signbit(again.numbers.at("energy at start")));
         EXPECT_EQ(comm.all_sum(rock_again.size()), count);
         EXPECT_EQ(none_again.size(), 0U);

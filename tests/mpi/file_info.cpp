@@ -43,12 +43,12 @@ TEST(FileInfo, DescribesCheckpointsAndSnapshots) {
     write_checkpoint(comm, folder.path, some_state(7), {&set});
     write_snapshot(comm, folder.path, 0, some_state(7), set, {{&field::mass}});
     if (!comm.is_root()) return;
-    const std::string checkpoint = describe_file(folder.path / "checkpoint_000000007.h5");
+    const std::string checkpoint = describe_file(folder.path / "checkpoint_000000007.h5").text;
     for (const char* part : {"checkpoint (format 1) of talus 0.1", "step 7, time 0.3333333333333333 s",
                              "set rock: 5000 particles in 3 dimensions", "kg        2.5 to 2.5",
                              "length 5 to 5", "work = 5e-324", "checksums: all match"})
         EXPECT_NE(checkpoint.find(part), std::string::npos) << part << "\n" << checkpoint;
-    const std::string snapshot = describe_file(folder.path / "rock_000000.hdf");
+    const std::string snapshot = describe_file(folder.path / "rock_000000.hdf").text;
     for (const char* part :
          {"snapshot (format 1)", "set rock: 5000 particles", "Masses", "kg        2.5 to 2.5", "all match"})
         EXPECT_NE(snapshot.find(part), std::string::npos) << part << "\n" << snapshot;

@@ -72,6 +72,7 @@ inline RunState some_state(std::uint64_t step) {
     state.resolved_scene = "# resolved\n";
     state.version = "0.1";
     state.numbers = {{"energy at start", -0.0}, {"work", 5e-324}, {"big", 1e300}};
+    state.materials = {"rock", "rock", "dust"};
     return state;
 }
 

@@ -89,7 +89,7 @@ class Plot(unittest.TestCase):
             self.folder = Path(scratch.name) / self._testMethodName.removeprefix("test_")
             self.folder.mkdir()
 
-    def plot(self, *options, code=0):
+    def plot(self, *options, code=0, error=""):
         done = subprocess.run([PLOT, self.folder, *options], capture_output=True, text=True)
         self.assertEqual(done.returncode, code, done.stderr)
         pictures = [Path(line) for line in done.stdout.splitlines()]
@@ -97,6 +97,8 @@ class Plot(unittest.TestCase):
             self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
             self.assertGreater(picture.stat().st_size, 5000)
         self.assertNotIn("Traceback", done.stderr)
+        if error:
+            self.assertRegex(done.stderr, error)
         return {p.name for p in pictures}
 
     def test_ball_3d(self):
@@ -144,6 +146,14 @@ class Plot(unittest.TestCase):
     def test_no_fragments(self):
         (self.folder / "fragments.csv").write_text("rank,label,mass [kg],mass_fraction\n")
         self.plot(code=1)
+
+    def test_damaged_snapshots_are_named(self):
+        write_series(self.folder, "gas", 1, [(t, tube(t)) for t in (0, 0.1)])
+        last = self.folder / "gas_000001.hdf"
+        content = last.read_bytes()
+        for damaged in (content[: len(content) // 2], b"", b"no snapshot"):
+            last.write_bytes(damaged)
+            self.plot(code=1, error=r"^tools/plot: .*gas_000001\.hdf: cannot be read as a snapshot \(.*\)\n$")
 
     def test_empty_folder_is_an_error(self):
         self.plot(code=1)

@@ -261,6 +261,7 @@ TEST(Spelling, Distance) {
     EXPECT_EQ(spelling_distance("", "abc"), 3U);
     EXPECT_EQ(nearest_spelling("radus", {"radius", "material"}), "radius");
     EXPECT_EQ(nearest_spelling("colour", {"radius", "material"}), "");
+    EXPECT_EQ(nearest_spelling("bodies", {"body", "box"}), "body");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 namespace talus {
@@ -44,6 +45,20 @@ TEST(Units, AsAstronomersWriteThem) {
     EXPECT_DOUBLE_EQ(convert_to_si("2 rpm", "rad/s"), 4 * std::numbers::pi / 60);
     EXPECT_DOUBLE_EQ(convert_to_si("2700 kg/m3", "kg/m3"), 2700);
     EXPECT_DOUBLE_EQ(convert_to_si("10 Mt", "kg"), 1e10);
+}
+
+// The double nearest to the decimal number, as if it had been written in SI units.
+TEST(Units, PowersOfTenAreExact) {
+    EXPECT_EQ(convert_to_si("50 us", "s"), 50e-6);
+    EXPECT_EQ(convert_to_si("0.3 us", "s"), 0.3e-6);
+    EXPECT_EQ(convert_to_si("-7 mm", "m"), -7e-3);
+    EXPECT_EQ(convert_to_si("2.2E+1 ns", "s"), 22e-9);
+    EXPECT_EQ(convert_to_si("1.1e-3 km", "m"), 1.1);
+    EXPECT_EQ(convert_to_si("26.7 GPa", "Pa"), 26.7e9);
+    EXPECT_EQ(convert_to_si("2.33 g/cm^3", "kg m-3"), 2330);
+    EXPECT_EQ(convert_to_si("7 %", "1"), 0.07);
+    EXPECT_EQ(convert_to_si("0 km", "m"), 0);
+    EXPECT_FALSE(std::isfinite(convert_to_si("1e306 km", "m")));
 }
 
 TEST(Units, AnglesAreRadians) {

@@ -1,0 +1,16 @@
+#pragma once
+#include "io/scene.hpp"
+#include "src/setup/scene_setup.hpp"
+#include "src/simulation.hpp"
+
+namespace talus {
+
+/// What can be wrong with a scene that is read without a fault; to be asked before anything is written.
+/// Throws SceneError (on every rank) naming the place in the scene: gases without a sound speed, and more
+/// snapshots until `end_time` [s] than their numbers have digits.
+void check_plan(const Scene& scene, const SceneSetup& setup, double end_time);
+
+/// The same for a box that is shorter, along an axis where it is closed, than particles reach. Collective.
+void check_box(const Scene& scene, const Simulation& simulation);
+
+}  // namespace talus
