@@ -68,15 +68,14 @@ class PairRecords {
 
     const PairRecord<count>& operator[](std::uint32_t k) const { return records_[slot(k)]; }
 
-    /// The records of four particles, one in each lane.
+    /// The records of as many particles as there are lanes, one in each.
     std::array<Lanes, count> gather(const std::uint32_t* index) const {
         std::array<Lanes, count> lanes;
         std::array<const double*, lane_count> from;
         for (std::size_t lane = 0; lane < lane_count; ++lane) from[lane] = (*this)[index[lane]].values.data();
-        const auto two = [&](std::size_t c) {
-            load_two({from[0] + c, from[1] + c, from[2] + c, from[3] + c}, lanes[c], lanes[c + 1]);
-        };
-        [&]<std::size_t... pair>(std::index_sequence<pair...>) { (two(2 * pair), ...); }
+        [&]<std::size_t... pair>(std::index_sequence<pair...>) {
+            (load_two(from, 2 * pair, lanes[2 * pair], lanes[2 * pair + 1]), ...);
+        }
         (std::make_index_sequence<count / 2>{});
         if constexpr (count % 2 == 1)
             lanes[count - 1] = Lanes([&](auto lane) { return from[lane][count - 1]; });
