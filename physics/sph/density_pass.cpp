@@ -81,8 +81,7 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
             const bool summed = settings.density == DensityMethod::summation;
             if (summed) density[i] = sum(i, 1, share);
             if (!next_h) continue;
-            const double smoothed =
-                summed && widening == 1 ? density[i] : sum(i, widening, widened_share);
+            const double smoothed = summed && widening == 1 ? density[i] : sum(i, widening, widened_share);
             next_h[i] = settings.eta * std::pow(mass[i] / smoothed, 1.0 / D);
             if (settings.largest_smoothing_length > 0)
                 next_h[i] = std::min(next_h[i], settings.largest_smoothing_length);

@@ -49,7 +49,8 @@ SedovTaylor::Profile SedovTaylor::profile(double v) const {
     const double alpha0 = 2 / k, alpha2 = -(g - 1) / (2 * (g - 1) + j),
                  alpha1 = k * g / (2 + j * (g - 1)) * (2 * j * (2 - g) / (g * k * k) - alpha2),
                  alpha3 = j / (2 * (g - 1) + j), alpha4 = alpha1 * k / (2 - g), alpha5 = -2 / (2 - g);
-    const double x1 = a * v, x2 = b * std::max(c * v - 1, 0.0), x3 = d * (1 - e * v), x4 = b * (1 - c * v / g);
+    const double x1 = a * v, x2 = b * std::max(c * v - 1, 0.0), x3 = d * (1 - e * v),
+                 x4 = b * (1 - c * v / g);
     const double radius = std::pow(x1, -alpha0) * std::pow(x2, -alpha2) * std::pow(x3, -alpha1);
     return {radius, x1 * radius, std::pow(x2, alpha3) * std::pow(x3, alpha4) * std::pow(x4, alpha5),
             std::pow(x1, alpha0 * j) * std::pow(x3, alpha4 - 2 * alpha1) * std::pow(x4, 1 + alpha5)};

@@ -4,8 +4,8 @@
 namespace talus::reference {
 
 /// Point explosion in three dimensions in a cold ideal gas of uniform density. L. I. Sedov, Similarity and
-/// Dimensional Methods in Mechanics, Academic Press 1959, ch. IV; in the form of J. R. Kamm, F. X. Timmes, Los
-/// Alamos report LA-UR-07-2849 (2007), eqs 38-53 with j = 3 and omega = 0.
+/// Dimensional Methods in Mechanics, Academic Press 1959, ch. IV; in the form of J. R. Kamm, F. X. Timmes,
+/// Los Alamos report LA-UR-07-2849 (2007), eqs 38-53 with j = 3 and omega = 0.
 class SedovTaylor {
   public:
     /// `energy` [J], `density` of the undisturbed gas [kg/m3], 1.2 < gamma < 2. Throws std::invalid_argument
