@@ -10,9 +10,13 @@
 
 namespace talus {
 
-/// Four doubles that a pair loop works on at once: four partners of one particle. Always four, so that sums
-/// over partners have the same bits on every processor.
+/// The doubles that a pair loop works on at once, several partners of one particle: as many as the processor
+/// has registers for. What LaneSum adds up does not depend on it.
+#ifdef __AVX512VL__
+inline constexpr std::size_t lane_count = 8;
+#else
 inline constexpr std::size_t lane_count = 4;
+#endif
 using Lanes = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lane_count>>;
 using LaneMask = Lanes::mask_type;
 
@@ -24,8 +28,24 @@ inline Lanes select(const LaneMask& condition, const Lanes& yes, const Lanes& no
 }
 inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 
-/// Sum over lanes in a fixed order.
-inline double sum(const Lanes& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+/// A sum over partners in eight partial sums, partner k in the one of k mod 8, and of these in a fixed order:
+/// the same bits on every processor. Partners are added in order, from 0 on.
+class LaneSum {
+  public:
+    /// Adds the terms of partners k to k + lane_count - 1; zeros where there is none.
+    void add(std::size_t k, const Lanes& terms) { parts_[k / lane_count % parts_.size()] += terms; }
+    double total() const {
+        constexpr std::size_t half = 4;
+        std::array<double, 2 * half> parts;
+        for (std::size_t p = 0; p < parts_.size(); ++p)
+            parts_[p].copy_to(parts.data() + p * lane_count, std::experimental::element_aligned);
+        for (std::size_t k = 0; k < half; ++k) parts[k] += parts[k + half];
+        return (parts[0] + parts[1]) + (parts[2] + parts[3]);
+    }
+
+  private:
+    std::array<Lanes, 8 / lane_count> parts_{};
+};
 
 /// True in the first `count` lanes.
 inline LaneMask first_lanes(std::size_t count) {
@@ -35,25 +55,41 @@ inline LaneMask first_lanes(std::size_t count) {
 
 inline Lanes load(const double* from) { return Lanes(from, std::experimental::element_aligned); }
 
-/// Two neighbouring values of four records: the first of each in the lanes of `first`, and so on.
-inline void load_two(const std::array<const double*, lane_count>& records, Lanes& first, Lanes& second) {
+/// Values `c` and `c` + 1 of as many records as there are lanes: the first of each in the lanes of `first`.
+inline void load_two(const std::array<const double*, lane_count>& records, std::size_t c, Lanes& first,
+                     Lanes& second) {
 #ifdef __AVX2__
-    const auto halves = [](const double* low, const double* high) {
-        return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(low)), _mm_loadu_pd(high), 1);
+    const auto halves = [&](std::size_t low, std::size_t high) {
+        return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(records[low] + c)),
+                                    _mm_loadu_pd(records[high] + c), 1);
     };
-    const __m256d even = halves(records[0], records[2]), odd = halves(records[1], records[3]);
+#endif
+#ifdef __AVX512VL__
+    const auto joined = [](__m256d low, __m256d high) {
+        return _mm512_insertf64x4(_mm512_castpd256_pd512(low), high, 1);
+    };
+    const __m512d even = joined(halves(0, 2), halves(4, 6)), odd = joined(halves(1, 3), halves(5, 7));
+    first = Lanes(_mm512_unpacklo_pd(even, odd));
+    second = Lanes(_mm512_unpackhi_pd(even, odd));
+#elif defined(__AVX2__)
+    const __m256d even = halves(0, 2), odd = halves(1, 3);
     first = Lanes(_mm256_unpacklo_pd(even, odd));
     second = Lanes(_mm256_unpackhi_pd(even, odd));
 #else
-    first = Lanes([&](auto lane) { return records[lane][0]; });
-    second = Lanes([&](auto lane) { return records[lane][1]; });
+    first = Lanes([&](auto lane) { return records[lane][c]; });
+    second = Lanes([&](auto lane) { return records[lane][c + 1]; });
 #endif
 }
 
-/// Stores those of `from[0..3]` whose lane of `sign` is negative one after the other, and returns how many
-/// they are. All four places at `to` may be written.
+/// Stores those of `from` whose lane of `sign` is negative one after the other, and returns how many
+/// they are. All places of a set of lanes at `to` may be written.
 inline std::size_t keep_negative(const Lanes& sign, const std::uint32_t* from, std::uint32_t* to) {
-#ifdef __AVX2__
+#ifdef __AVX512VL__
+    const __mmask8 mask = _mm512_cmp_pd_mask(static_cast<__m512d>(sign), _mm512_setzero_pd(), _CMP_LT_OQ);
+    const __m256i values = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_maskz_compress_epi32(mask, values));
+    return static_cast<std::size_t>(_mm_popcnt_u32(mask));
+#elif defined(__AVX2__)
     struct Shuffles {
         alignas(16) std::array<std::array<std::uint8_t, 16>, 16> bytes{};
         constexpr Shuffles() {

@@ -37,18 +37,27 @@ void ParticleSet::add(const FieldInfo& info) {
     columns_.push_back(std::move(column));
 }
 
+namespace {
+/// Room to grow is a sixteenth, not as much again as std::vector takes.
+void resize_with_room(std::vector<std::byte>& values, std::size_t bytes) {
+    if (bytes > values.capacity()) values.reserve(values.empty() ? bytes : bytes + bytes / 16);
+    values.resize(bytes);
+}
+}  // namespace
+
 void ParticleSet::resize(std::size_t size) {
     size_ = size;
     halo_size_ = 0;
     for (Column& column : columns_)
-        for (auto& component : column.components) component.resize(size * column.value_size());
+        for (auto& component : column.components) resize_with_room(component, size * column.value_size());
 }
 
 void ParticleSet::set_halo_size(std::size_t halo_size) {
     halo_size_ = halo_size;
     for (Column& column : columns_) {
         if (column.info->reach != Reach::halo) continue;
-        for (auto& component : column.components) component.resize(size_with_halo() * column.value_size());
+        for (auto& component : column.components)
+            resize_with_room(component, size_with_halo() * column.value_size());
     }
 }
 

@@ -90,15 +90,6 @@ class Partners {
     /// The partners; behind them, up to a multiple of lane_count, the last one is repeated.
     std::span<const std::uint32_t> index() const { return {index_.data(), count_}; }
 
-    /// Copies one component of a field for all partners to contiguous memory.
-    template <class T>
-    void gather(const T* from, AlignedValues& to) const {
-        to.reserve(count_);
-        double* values = to.data();
-        const std::uint32_t* index = index_.data();
-        for (std::size_t k = 0; k < count_; ++k) values[k] = static_cast<double>(from[index[k]]);
-    }
-
   private:
     static constexpr double nowhere = std::numeric_limits<double>::infinity();
     static std::size_t padded(std::size_t count) {

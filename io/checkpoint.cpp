@@ -129,11 +129,15 @@ void read_set(const Communicator& comm, const std::filesystem::path& file, const
         });
         std::vector<std::uint64_t> hashes;
         agree_on(comm, [&] {
-            bytes.resize(rows.count() * field.extent.row_bytes());
-            if (!bytes.empty())
-                FileReader(file).read(field.extent.offset + rows.begin * field.extent.row_bytes(), bytes);
-            hashes = block_hashes(bytes, field.extent.row_bytes());
-            unpack_rows(bytes, *column);
+            const std::size_t row_bytes = field.extent.row_bytes();
+            const FileReader reader(file);
+            for (std::uint64_t slab = 0; slab < slabs_in(rows); ++slab) {
+                const RowRange range = slab_of(rows, slab);
+                bytes.resize(range.count() * row_bytes);
+                reader.read(field.extent.offset + range.begin * row_bytes, bytes);
+                for (const std::uint64_t hash : block_hashes(bytes, row_bytes)) hashes.push_back(hash);
+                unpack_rows(bytes, *column, range.begin - rows.begin);
+            }
         });
         const auto all_hashes = comm.all_gather(std::span<const std::uint64_t>(hashes));
         if (combined_hash(all_hashes) != field.checksum)
@@ -164,8 +168,10 @@ void write_checkpoint(const Communicator& comm, const std::filesystem::path& dir
             dataset.unit = column->info->unit;
             dataset.description = column->info->description;
             dataset.rows = order.rows();
-            dataset.data = [&order, column, row_bytes = dataset.row_bytes()] {
-                return order.exchange(pack_rows(*column, order.send_order()), row_bytes);
+            dataset.data = [&order, column, row_bytes = dataset.row_bytes()](std::uint64_t slab) {
+                return order.exchange(slab, row_bytes, [column](std::span<const std::uint32_t> particles) {
+                    return pack_rows(*column, particles);
+                });
             };
             plan.datasets.push_back(std::move(dataset));
         }

@@ -43,33 +43,52 @@ IdOrder::IdOrder(const Communicator& comm, std::span<const std::uint64_t> ids, s
         send_starts_[r] = static_cast<int>(positions[r - 1] == total_ ? sorted.end() - sorted.begin()
                                                                       : first - sorted.begin());
     }
-    send_counts_.resize(ranks);
-    for (std::size_t r = 0; r < ranks; ++r)
-        send_counts_[r] =
-            (r + 1 < ranks ? send_starts_[r + 1] : static_cast<int>(sorted.size())) - send_starts_[r];
-    receive_counts_.resize(ranks);
-    MPI_Alltoall(send_counts_.data(), 1, MPI_INT, receive_counts_.data(), 1, MPI_INT, comm.handle());
-    receive_starts_.assign(ranks, 0);
-    for (std::size_t r = 1; r < ranks; ++r)
-        receive_starts_[r] = receive_starts_[r - 1] + receive_counts_[r - 1];
+    find_sources(sorted, set_name);
+    count_slabs();
+}
 
-    const std::vector<std::byte> received = send(std::as_bytes(std::span(sorted)), sizeof(std::uint64_t));
-    std::vector<std::uint64_t> arrived(received.size() / sizeof(std::uint64_t));
-    if (!received.empty()) std::memcpy(arrived.data(), received.data(), received.size());
-    receive_order_.resize(arrived.size());
-    std::iota(receive_order_.begin(), receive_order_.end(), 0U);
-    std::sort(receive_order_.begin(), receive_order_.end(),
+/// Where each of this rank's rows comes from.
+void IdOrder::find_sources(std::span<const std::uint64_t> sorted, std::string_view set_name) {
+    const auto ranks = static_cast<std::size_t>(comm_.size());
+    std::vector<int> send_counts(ranks), receive_counts(ranks), receive_starts(ranks + 1, 0);
+    for (std::size_t r = 0; r < ranks; ++r)
+        send_counts[r] =
+            (r + 1 < ranks ? send_starts_[r + 1] : static_cast<int>(sorted.size())) - send_starts_[r];
+    MPI_Alltoall(send_counts.data(), 1, MPI_INT, receive_counts.data(), 1, MPI_INT, comm_.handle());
+    for (std::size_t r = 0; r < ranks; ++r) receive_starts[r + 1] = receive_starts[r] + receive_counts[r];
+    std::vector<std::uint64_t> arrived(static_cast<std::size_t>(receive_starts.back()));
+    MPI_Alltoallv(sorted.data(), send_counts.data(), send_starts_.data(), MPI_UINT64_T, arrived.data(),
+                  receive_counts.data(), receive_starts.data(), MPI_UINT64_T, comm_.handle());
+    std::vector<std::uint32_t> order(arrived.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return arrived[a] < arrived[b]; });
-    agree_on(comm, [&] {
+    agree_on(comm_, [&] {
         for (std::size_t k = 1; k < arrived.size(); ++k)
-            if (arrived[receive_order_[k]] == arrived[receive_order_[k - 1]])
+            if (arrived[order[k]] == arrived[order[k - 1]])
                 throw std::runtime_error(
-                    fmt::format("particle set {}: id {} occurs twice", set_name, arrived[receive_order_[k]]));
+                    fmt::format("particle set {}: id {} occurs twice", set_name, arrived[order[k]]));
     });
-    agree_on(comm, [&] {
+    agree_on(comm_, [&] {
         if (arrived.size() != rows_.count())
             throw std::runtime_error(fmt::format("particle set {}: an id occurs twice", set_name));
     });
+    source_of_row_.resize(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const auto after = std::upper_bound(receive_starts.begin(), receive_starts.end(), order[k]);
+        source_of_row_[k] = static_cast<int>(after - receive_starts.begin()) - 1;
+    }
+}
+
+/// How many rows of each slab go from whom to whom.
+void IdOrder::count_slabs() {
+    slabs_ = comm_.all_max(slabs_in(rows_));
+    receive_counts_.assign(static_cast<std::size_t>(comm_.size()) * slabs_, 0);
+    send_counts_.resize(receive_counts_.size());
+    for (std::size_t k = 0; k < source_of_row_.size(); ++k)
+        ++receive_counts_[static_cast<std::size_t>(source_of_row_[k]) * slabs_ + k / rows_per_slab];
+    const int slabs = static_cast<int>(slabs_);
+    MPI_Alltoall(receive_counts_.data(), slabs, MPI_INT, send_counts_.data(), slabs, MPI_INT, comm_.handle());
 }
 
 /// The ids at `positions` of the order over all ranks, by bisection of all of them at once.
@@ -103,24 +122,36 @@ std::vector<std::uint64_t> IdOrder::ids_at(std::span<const std::uint64_t> sorted
     }
 }
 
-std::vector<std::byte> IdOrder::send(std::span<const std::byte> packed, std::size_t row_bytes) const {
-    const auto arriving =
-        static_cast<std::size_t>(receive_starts_.back()) + static_cast<std::size_t>(receive_counts_.back());
-    std::vector<std::byte> received(arriving * row_bytes);
-    MPI_Datatype row = MPI_DATATYPE_NULL;  // counts in rows, since bytes may not fit an int
+std::vector<std::byte> IdOrder::exchange(std::uint64_t slab, std::size_t row_bytes, const Pack& pack) const {
+    const auto ranks = static_cast<std::size_t>(comm_.size());
+    std::vector<int> send_counts(ranks), receive_counts(ranks), send_starts(ranks, 0),
+        receive_starts(ranks, 0);
+    std::vector<std::uint32_t> leaving;
+    for (std::size_t r = 0; r < ranks; ++r) {
+        const auto counts = send_counts_.begin() + static_cast<std::ptrdiff_t>(r * slabs_);
+        const auto here = counts + static_cast<std::ptrdiff_t>(slab);
+        const auto first = send_order_.begin() + std::accumulate(counts, here, send_starts_[r]);
+        send_counts[r] = *here;
+        receive_counts[r] = receive_counts_[r * slabs_ + slab];
+        send_starts[r] = static_cast<int>(leaving.size());
+        if (r > 0) receive_starts[r] = receive_starts[r - 1] + receive_counts[r - 1];
+        leaving.insert(leaving.end(), first, first + *here);
+    }
+    const std::vector<std::byte> packed = pack(leaving);
+    const RowRange range = slab_of(rows_, slab);
+    std::vector<std::byte> received(range.count() * row_bytes), rows(received.size());
+    MPI_Datatype row = MPI_DATATYPE_NULL;
     MPI_Type_contiguous(static_cast<int>(row_bytes), MPI_BYTE, &row);
     MPI_Type_commit(&row);
-    MPI_Alltoallv(packed.data(), send_counts_.data(), send_starts_.data(), row, received.data(),
-                  receive_counts_.data(), receive_starts_.data(), row, comm_.handle());
+    MPI_Alltoallv(packed.data(), send_counts.data(), send_starts.data(), row, received.data(),
+                  receive_counts.data(), receive_starts.data(), row, comm_.handle());
     MPI_Type_free(&row);
-    return received;
-}
-
-std::vector<std::byte> IdOrder::exchange(std::span<const std::byte> packed, std::size_t row_bytes) const {
-    const std::vector<std::byte> received = send(packed, row_bytes);
-    std::vector<std::byte> rows(received.size());
-    for (std::size_t k = 0; k < receive_order_.size(); ++k)
-        std::memcpy(rows.data() + k * row_bytes, received.data() + receive_order_[k] * row_bytes, row_bytes);
+    std::vector<int>& next = receive_starts;  // each source's rows arrive in order of id
+    for (std::size_t k = 0; k < range.count(); ++k) {
+        const int source = source_of_row_[static_cast<std::size_t>(range.begin - rows_.begin) + k];
+        const auto from = static_cast<std::size_t>(next[static_cast<std::size_t>(source)]++);
+        std::memcpy(rows.data() + k * row_bytes, received.data() + from * row_bytes, row_bytes);
+    }
     return rows;
 }
 

@@ -17,9 +17,6 @@ namespace {
 using hdf5::check;
 using hdf5::Handle;
 
-/// Independent transfers of 2 GiB and more fail in HDF5 1.10; collective ones are kept well below, too.
-constexpr std::size_t slab_bytes = std::size_t{1} << 30;
-
 struct Written {
     std::vector<std::uint64_t> hashes;  ///< of this rank's blocks
     std::uint64_t checksum = 0;         ///< of the dataset, on the root
@@ -82,24 +79,20 @@ void write_dataset(const Communicator& comm, hid_t file, const DatasetPlan& plan
         written.checksum = combined_hash({});
         return;
     }
-    const std::vector<std::byte> bytes = plan.data();
     std::optional<Handle> dataset;
-    agree_on(comm, [&] {
-        if (bytes.size() != plan.rows.count() * plan.row_bytes())
-            throw std::logic_error("wrong number of rows");
-        dataset.emplace(hdf5::open_dataset(file, plan.path));
-    });
-    const std::uint64_t slab_rows = std::max<std::uint64_t>(1, slab_bytes / plan.row_bytes());
-    const std::uint64_t slabs = comm.all_max((plan.rows.count() + slab_rows - 1) / slab_rows);
+    agree_on(comm, [&] { dataset.emplace(hdf5::open_dataset(file, plan.path)); });
+    const std::uint64_t slabs = comm.all_max(slabs_in(plan.rows));
     for (std::uint64_t k = 0; k < slabs; ++k) {
-        const std::uint64_t begin = std::min(plan.rows.begin + k * slab_rows, plan.rows.end);
-        const std::uint64_t end = std::min(begin + slab_rows, plan.rows.end);
+        const RowRange range = slab_of(plan.rows, k);
+        const std::vector<std::byte> bytes = plan.data(k);
         agree_on(comm, [&] {
-            write_slab(*dataset, plan, {begin, end},
-                       bytes.data() + (begin - plan.rows.begin) * plan.row_bytes());
+            if (bytes.size() != range.count() * plan.row_bytes())
+                throw std::logic_error("wrong number of rows");
         });
+        agree_on(comm, [&] { write_slab(*dataset, plan, range, bytes.data()); });
+        const std::vector<std::uint64_t> hashes = block_hashes(bytes, plan.row_bytes());
+        written.hashes.insert(written.hashes.end(), hashes.begin(), hashes.end());
     }
-    written.hashes = block_hashes(bytes, plan.row_bytes());
     written.checksum = combined_hash(comm.all_gather(std::span<const std::uint64_t>(written.hashes)));
 }
 

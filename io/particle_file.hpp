@@ -17,8 +17,9 @@ struct DatasetPlan {
     std::size_t components = 1;
     std::string unit;  ///< UDUNITS string
     std::string description;
-    RowRange rows;                                 ///< this rank's, whole blocks
-    std::function<std::vector<std::byte>()> data;  ///< this rank's rows; collective
+    RowRange rows;  ///< this rank's, whole blocks
+    /// This rank's rows of a slab (slab_of). Collective.
+    std::function<std::vector<std::byte>(std::uint64_t slab)> data;
 
     std::size_t row_bytes() const { return components * size_of(type); }
 };

@@ -19,11 +19,11 @@ std::vector<std::byte> pack_rows(const Column& column, std::span<const std::uint
     return rows;
 }
 
-void unpack_rows(std::span<const std::byte> rows, Column& column) {
+void unpack_rows(std::span<const std::byte> rows, Column& column, std::size_t first) {
     const std::size_t value = column.value_size();
     const std::size_t row = value * column.components.size();
     for (std::size_t c = 0; c < column.components.size(); ++c) {
-        std::byte* to = column.components[c].data();
+        std::byte* to = column.components[c].data() + first * value;
         for (std::size_t at = c * value; at < rows.size(); at += row, to += value)
             std::memcpy(to, rows.data() + at, value);
     }

@@ -128,8 +128,10 @@ DatasetPlan plan_field(const ParticleSet& set, const IdOrder& order, const Snaps
     plan.description =
         wanted.description.empty() ? std::string(column.info->description) : wanted.description;
     plan.rows = order.rows();
-    plan.data = [&column, &order, &set, type = plan.type, row_bytes = plan.row_bytes()] {
-        return order.exchange(packed(column, type, order.send_order(), set.dimension()), row_bytes);
+    plan.data = [&column, &order, &set, type = plan.type, row_bytes = plan.row_bytes()](std::uint64_t slab) {
+        return order.exchange(slab, row_bytes, [&](std::span<const std::uint32_t> particles) {
+            return packed(column, type, particles, set.dimension());
+        });
     };
     return plan;
 }
@@ -143,10 +145,11 @@ DatasetPlan plan_offsets(const Communicator& comm, std::uint64_t total) {
     plan.unit = std::string("1");
     plan.description = "first point of each VTK cell";
     plan.rows = rows_of_rank(plan.total, comm.rank(), comm.size());
-    plan.data = [rows = plan.rows] {
-        std::vector<std::byte> bytes(rows.count() * sizeof(std::uint64_t));
-        for (std::uint64_t row = rows.begin; row < rows.end; ++row)
-            std::memcpy(bytes.data() + (row - rows.begin) * sizeof row, &row, sizeof row);
+    plan.data = [rows = plan.rows](std::uint64_t slab) {
+        const RowRange range = slab_of(rows, slab);
+        std::vector<std::byte> bytes(range.count() * sizeof(std::uint64_t));
+        for (std::uint64_t row = range.begin; row < range.end; ++row)
+            std::memcpy(bytes.data() + (row - range.begin) * sizeof row, &row, sizeof row);
         return bytes;
     };
     return plan;

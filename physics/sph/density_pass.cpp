@@ -1,8 +1,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/sph/pair_records.hpp"
 #include "physics/sph/pass_support.hpp"
 #include "physics/sph/passes.hpp"
+#include "physics/sph/small_vectors.hpp"
 
 namespace talus::sph {
 
@@ -20,49 +22,53 @@ double own_share(const Kernel& kernel, double eta) {
 template <int D, class Kernel>
 class DensitySum {
   public:
-    DensitySum(const ParticleSet& particles, const Kernel& kernel, double widest)
+    DensitySum(const ParticleSet& particles, const CellTable& table, Cells which, const Kernel& kernel,
+               double widest)
         : kernel_(kernel),
-          position_(components<D>(particles, field::position)),
-          mass_(particles.data(field::mass)),
           h_(particles.data(field::smoothing_length)),
-          partners_(position_, h_, kernel.support() * widest) {}
+          partners_(components<D>(particles, field::position), h_, kernel.support() * widest),
+          records_(particles, table, which) {
+        records_.copy(0, components<D>(particles, field::position));
+        records_.copy(place_mass, components<1>(particles, field::mass));
+        records_.fill_copies(as_copied);
+    }
 
-    void enter(const CellEntry& cell, std::span<const Run> runs) { partners_.enter(cell, runs); }
+    void enter(const CellEntry& cell, std::span<const Run> runs) {
+        partners_.enter(cell, runs);
+        records_.enter(runs, as_copied);
+    }
     /// With the kernel of `widening` h; `own_share`: of the particle's own term.
-    double operator()(std::uint32_t i, double widening, double own_share) {
+    [[gnu::flatten]] double operator()(std::uint32_t i, double widening, double own_share) {
         const double inverse_h = 1 / (widening * h_[i]);
         partners_.find(i, kernel_.support() * widening);
-        x_.gather(partners_, position_);
-        partners_.gather(mass_, m_);
-        const auto x = x_.data();
-        const double* m = m_.data();
-        std::array<double, D> x_i;
-        for (int d = 0; d < D; ++d) x_i[d] = position_[d][i];
-        const Kernel kernel = kernel_;
-        double total = 0;
-#pragma omp simd reduction(+ : total)
-        for (std::size_t k = 0; k < partners_.count(); ++k) {
-            double r2 = 0;
-            for (int d = 0; d < D; ++d) r2 += (x_i[d] - x[d][k]) * (x_i[d] - x[d][k]);
-            total += m[k] * kernel.value(r2, inverse_h);
+        const auto own = broadcast(records_[i]);
+        const std::span<const std::uint32_t> partners = partners_.index();
+        LaneSum total;
+        for (std::size_t k = 0; k < partners.size(); k += lane_count) {
+            const auto other = records_.gather(partners.data() + k);
+            Vector<Lanes, D> r;
+            for (std::size_t d = 0; d < D; ++d) r[d] = own[d] - other[d];
+            const Lanes value = kernel_.value(dot(r, r), Lanes(inverse_h));
+            total.add(k, select(first_lanes(partners.size() - k), other[place_mass] * value, Lanes(0.0)));
         }
-        return total + own_share * mass_[i] * kernel_.value(0.0, inverse_h);
+        return total.total() + own_share * records_[i].values[place_mass] * kernel_.value(0.0, inverse_h);
     }
 
   private:
+    static constexpr std::size_t place_mass = D;
+    static void as_copied(std::size_t, std::array<double, D + 1>&) {}
+
     const Kernel kernel_;
-    std::array<const double*, D> position_;
-    const double *mass_, *h_;
+    const double* h_;
     Partners<D> partners_;
-    PartnerValues<D> x_;
-    AlignedValues m_;
+    PairRecords<D + 1> records_;
 };
 
 template <int D, class Kernel>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
          const Kernel& kernel) {
     const double widening = settings.smoothing_widening;
-    DensitySum<D, Kernel> sum(particles, kernel, std::max(1.0, widening));
+    DensitySum<D, Kernel> sum(particles, table, which, kernel, std::max(1.0, widening));
     const double share = own_share<D>(kernel, settings.eta),
                  widened_share = own_share<D>(kernel, widening * settings.eta);
     const double* mass = particles.data(field::mass);
@@ -72,9 +78,10 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
         sum.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            if (settings.density == DensityMethod::summation) density[i] = sum(i, 1, share);
+            const bool summed = settings.density == DensityMethod::summation;
+            if (summed) density[i] = sum(i, 1, share);
             if (!next_h) continue;
-            const double smoothed = sum(i, widening, widened_share);
+            const double smoothed = summed && widening == 1 ? density[i] : sum(i, widening, widened_share);
             next_h[i] = settings.eta * std::pow(mass[i] / smoothed, 1.0 / D);
             if (settings.largest_smoothing_length > 0)
                 next_h[i] = std::min(next_h[i], settings.largest_smoothing_length);

@@ -74,17 +74,18 @@ class GodunovPass {
         const Particle own{broadcast(records_[i])};
         const Lanes h = smoothing_length_[i];
         const std::span<const std::uint32_t> partners = partners_.index();
-        GodunovForce<Lanes, D> total{};
+        std::array<LaneSum, D> force{};
+        LaneSum power;
         for (std::size_t k = 0; k < partners.size(); k += lane_count) {
             const Particle other{records_.gather(partners.data() + k)};
             const auto term = godunov_pair<D, Options>(own, other, h, kernel_, settings_);
             const Lanes mass =
                 select(first_lanes(partners.size() - k), other.scalar(Places::mass), Lanes(0.0));
-            for (std::size_t d = 0; d < D; ++d) total.force[d] += mass * term.force[d];
-            total.power += mass * term.power;
+            for (std::size_t d = 0; d < D; ++d) force[d].add(k, mass * term.force[d]);
+            power.add(k, mass * term.power);
         }
-        for (std::size_t d = 0; d < D; ++d) acceleration_[d][i] = sum(total.force[d]);
-        power_[i] = sum(total.power);
+        for (std::size_t d = 0; d < D; ++d) acceleration_[d][i] = force[d].total();
+        power_[i] = power.total();
     }
 
     const Gaussian<D> kernel_;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "domain/cell_table.hpp"
 #include "domain/lanes.hpp"
@@ -38,12 +39,21 @@ class PairRecords {
         std::uint32_t longest = 1,
                       filled = 0;  // windows do not begin in order: a row of cells may be missing
         bool any = false;
+        std::vector<std::int32_t> begun;  // runs begun less runs ended at each particle
+        if (which == Cells::boundary) begun.assign(std::size_t{own_} + 1, 0);
         table.for_each_own(which, [&](const CellEntry&, std::span<const Run> runs, std::size_t) {
             const Run window = own_window(runs);
             filled = std::max(filled, window.end);
             if (window.begin < window.end) longest = std::max(longest, filled - window.begin);
             any = true;
+            if (begun.empty()) return;
+            for (const Run& run : runs) {
+                if (run.begin >= own_) continue;
+                ++begun[run.begin];
+                --begun[std::min(run.end, own_)];
+            }
         });
+        list_needed(begun);
         ring_ = std::bit_ceil(longest);
         copies_ = any && which != Cells::interior ? particles.halo_size() : 0;
         records_ = std::make_unique_for_overwrite<PairRecord<count>[]>(ring_ + copies_);
@@ -62,21 +72,24 @@ class PairRecords {
     /// Moves the window on to a cell with these runs. Cells must come in their order.
     template <class Finish>
     void enter(std::span<const Run> runs, Finish&& finish) {
-        const Run window = own_window(runs);
-        for (; filled_ < window.end; ++filled_) fill(filled_, finish);
+        const std::uint32_t end = own_window(runs).end;
+        for (; next_ < needed_.size(); ++next_) {
+            Run& rest = needed_[next_];
+            for (; rest.begin < std::min(rest.end, end); ++rest.begin) fill(rest.begin, finish);
+            if (rest.begin < rest.end) return;
+        }
     }
 
     const PairRecord<count>& operator[](std::uint32_t k) const { return records_[slot(k)]; }
 
-    /// The records of four particles, one in each lane.
+    /// The records of as many particles as there are lanes, one in each.
     std::array<Lanes, count> gather(const std::uint32_t* index) const {
         std::array<Lanes, count> lanes;
         std::array<const double*, lane_count> from;
         for (std::size_t lane = 0; lane < lane_count; ++lane) from[lane] = (*this)[index[lane]].values.data();
-        const auto two = [&](std::size_t c) {
-            load_two({from[0] + c, from[1] + c, from[2] + c, from[3] + c}, lanes[c], lanes[c + 1]);
-        };
-        [&]<std::size_t... pair>(std::index_sequence<pair...>) { (two(2 * pair), ...); }
+        [&]<std::size_t... pair>(std::index_sequence<pair...>) {
+            (load_two(from, 2 * pair, lanes[2 * pair], lanes[2 * pair + 1]), ...);
+        }
         (std::make_index_sequence<count / 2>{});
         if constexpr (count % 2 == 1)
             lanes[count - 1] = Lanes([&](auto lane) { return from[lane][count - 1]; });
@@ -94,6 +107,17 @@ class PairRecords {
         }
         return window;
     }
+    /// The own particles that lie in any run; all if there is nothing to tell.
+    void list_needed(const std::vector<std::int32_t>& begun) {
+        if (begun.empty()) needed_.push_back({0, own_});
+        std::int32_t depth = 0;
+        for (std::uint32_t k = 0; k < begun.size(); ++k) {
+            const std::int32_t before = depth;
+            depth += begun[k];
+            if (before == 0 && depth > 0) needed_.push_back({k, k});
+            if (before > 0 && depth == 0) needed_.back().end = k;
+        }
+    }
     std::size_t slot(std::uint32_t k) const { return k < own_ ? k & (ring_ - 1) : ring_ + (k - own_); }
 
     template <class Finish>
@@ -105,7 +129,9 @@ class PairRecords {
     }
 
     std::array<const double*, count> columns_{};
-    std::uint32_t own_, ring_ = 1, filled_ = 0;
+    std::uint32_t own_, ring_ = 1;
+    std::vector<Run> needed_;  ///< own particles still to be filled
+    std::size_t next_ = 0;     ///< in needed_
     std::size_t copies_ = 0;
     std::unique_ptr<PairRecord<count>[]> records_;
 };

@@ -24,27 +24,6 @@ std::array<T*, N> components_to_write(ParticleSet& particles, const Field<T>& fi
     return pointers;
 }
 
-/// Gathered values of all components of a field for one particle's partners.
-template <int N>
-class PartnerValues {
-  public:
-    template <int D, class T>
-    void gather(const Partners<D>& partners, const std::array<const T*, N>& from) {
-        for (int c = 0; c < N; ++c)
-            partners.gather(from[static_cast<std::size_t>(c)], values_[static_cast<std::size_t>(c)]);
-    }
-    /// Component arrays, valid until the next gather.
-    std::array<const double*, N> data() {
-        std::array<const double*, N> pointers;
-        for (int c = 0; c < N; ++c)
-            pointers[static_cast<std::size_t>(c)] = values_[static_cast<std::size_t>(c)].data();
-        return pointers;
-    }
-
-  private:
-    std::array<AlignedValues, N> values_;
-};
-
 /// Calls f(kernel) with the kernel object that the settings name.
 template <int D, class F>
 void with_kernel(const Settings& settings, F&& f) {

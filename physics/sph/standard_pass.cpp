@@ -1,6 +1,7 @@
+#include "physics/sph/pair_records.hpp"
 #include "physics/sph/pass_support.hpp"
 #include "physics/sph/passes.hpp"
-#include "physics/sph/small_tensors.hpp"
+#include "physics/sph/small_vectors.hpp"
 
 namespace talus::sph {
 
@@ -9,30 +10,35 @@ namespace {
 template <int D, class Kernel, bool strength>
 class StandardPass {
   public:
-    StandardPass(ParticleSet& particles, const Settings& settings, const Kernel& kernel)
+    StandardPass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
+                 const Kernel& kernel)
         : kernel_(kernel),
-          settings_(settings),
-          position_(components<D>(particles, field::position)),
-          velocity_(components<D>(particles, field::predicted_velocity)),
+          alpha_(settings.viscosity_alpha),
+          beta_(settings.viscosity_beta),
           acceleration_(components_to_write<D>(particles, field::acceleration)),
           power_(particles.data(field::specific_power)),
           viscous_speed_(particles.data(field::viscous_speed)),
-          partners_(position_, particles.data(field::smoothing_length), kernel.support()) {
-        scalars_ = {particles.data(field::mass), particles.data(field::predicted_density),
-                    particles.data(field::pressure), particles.data(field::sound_speed),
-                    particles.data(field::smoothing_length)};
-        if constexpr (strength) stress_ = components<symmetric_count<D>>(particles, field::predicted_stress);
+          partners_(components<D>(particles, field::position), particles.data(field::smoothing_length),
+                    kernel.support()),
+          records_(particles, table, which) {
+        records_.copy(place_position, components<D>(particles, field::position));
+        records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));
+        records_.copy(place_mass, components<1>(particles, field::mass));
+        records_.copy(place_density, components<1>(particles, field::predicted_density));
+        records_.copy(place_sound_speed, components<1>(particles, field::sound_speed));
+        records_.copy(place_h, components<1>(particles, field::smoothing_length));
+        records_.copy(place_pressure, components<1>(particles, field::pressure));
+        if constexpr (strength)
+            records_.copy(place_stress, components<symmetric_count<D>>(particles, field::predicted_stress));
+        records_.fill_copies(finish);
     }
 
     std::uint64_t visit(const CellEntry& cell, std::span<const Run> runs) {
         std::uint64_t pairs = 0;
         partners_.enter(cell, runs);
+        records_.enter(runs, finish);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
             partners_.find_mutual(i, kernel_.support());
-            x_.gather(partners_, position_);
-            v_.gather(partners_, velocity_);
-            values_.gather(partners_, scalars_);
-            if constexpr (strength) stresses_.gather(partners_, stress_);
             evaluate(i);
             pairs += partners_.count();
         }
@@ -40,93 +46,80 @@ class StandardPass {
     }
 
   private:
-    enum Scalar { mass, density, pressure, sound_speed, smoothing_length, scalar_count };
+    static constexpr std::size_t place_position = 0, place_velocity = D, place_mass = 2 * D,
+                                 place_density = place_mass + 1, place_sound_speed = place_mass + 2,
+                                 place_h = place_mass + 3, place_inverse_h = place_mass + 4,
+                                 place_pressure = place_mass + 5,  // this and the stress over density^2
+        place_stress = place_mass + 6, record_size = place_stress + (strength ? symmetric_count<D> : 0);
+    using Values = std::array<Lanes, record_size>;
 
-    void evaluate(std::uint32_t i) {
-        const std::size_t n = partners_.count();
-        const auto x = x_.data(), v = v_.data();
-        const auto values = values_.data();
-        const auto s = stresses_.data();
-        const Kernel kernel = kernel_;
-        const double alpha = settings_.viscosity_alpha, beta = settings_.viscosity_beta;
-        const double support2 = kernel.support() * kernel.support();
-        std::array<double, D> x_i, v_i;
-        for (int d = 0; d < D; ++d) {
-            x_i[d] = position_[d][i];
-            v_i[d] = velocity_[d][i];
-        }
-        const double rho_i = scalars_[density][i], c_i = scalars_[sound_speed][i],
-                     h_i = scalars_[smoothing_length][i];
-        const double inverse_rho2_i = 1 / (rho_i * rho_i), p_i = scalars_[pressure][i] * inverse_rho2_i;
-        std::array<double, symmetric_count<D>> s_i{};
-        if constexpr (strength)
-            for (int c = 0; c < symmetric_count<D>; ++c) s_i[c] = stress_[c][i] * inverse_rho2_i;
-        std::array<double*, D + 1> terms;
-        double viscous_speed = 0;
-        for (int d = 0; d <= D; ++d) {
-            terms_[d].reserve(n);
-            terms[d] = terms_[d].data();
-        }
-#pragma omp simd reduction(max : viscous_speed)
-        for (std::size_t k = 0; k < n; ++k) {
-            std::array<double, D> r;
-            double r2 = 0, approach = 0;
-            for (int d = 0; d < D; ++d) {
-                r[d] = x_i[d] - x[d][k];
-                r2 += r[d] * r[d];
-                approach += r[d] * (v_i[d] - v[d][k]);
+    /// Sets what is not copied from a field.
+    static void finish(std::size_t, std::array<double, record_size>& values) {
+        values[place_inverse_h] = 1 / values[place_h];
+        const double inverse_density2 = 1 / (values[place_density] * values[place_density]);
+        for (std::size_t c = place_pressure; c < record_size; ++c) values[c] *= inverse_density2;
+    }
+
+    /// The traction of a particle's own stress along r, over its density squared.
+    static Vector<Lanes, D> traction(const Values& values, const Lanes& pressure, const Vector<Lanes, D>& r) {
+        Vector<Lanes, D> traction;
+        for (std::size_t a = 0; a < D; ++a) {
+            traction[a] = -pressure * r[a];
+            if constexpr (strength) {
+                Symmetric<Lanes, D> stress;
+                for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = values[place_stress + c];
+                traction[a] += row_times(stress, a, r);
             }
-            const double rho_j = values[density][k], h_j = values[smoothing_length][k];
-            const double inverse_rho2_j = 1 / (rho_j * rho_j);
-            // Mean of both kernels' gradients, each within its own support.
-            const double near_i = r2 < support2 * h_i * h_i ? 0.5 : 0.0,
-                         near_j = r2 < support2 * h_j * h_j ? 0.5 : 0.0;
-            const double factor = near_i * kernel.factor(r2, 1 / h_i) + near_j * kernel.factor(r2, 1 / h_j);
-            const double h = 0.5 * (h_i + h_j);
-            const double mu = std::min(h * approach / (r2 + 0.01 * h * h), 0.0);
-            const double c = 0.5 * (c_i + values[sound_speed][k]);
-            const double viscosity = (beta * mu - alpha * c) * mu / (0.5 * (rho_i + rho_j));
-            viscous_speed = std::max(viscous_speed, mu < 0 ? alpha * c - 2 * beta * mu : 0.0);
+        }
+        return traction;
+    }
+
+    [[gnu::flatten]] void evaluate(std::uint32_t i) {
+        const Values own = broadcast(records_[i]);
+        const std::span<const std::uint32_t> partners = partners_.index();
+        std::array<LaneSum, D> force{};
+        LaneSum power;
+        Lanes viscous_speed = 0;
+        for (std::size_t k = 0; k < partners.size(); k += lane_count) {
+            const Values other = records_.gather(partners.data() + k);
+            Vector<Lanes, D> r, v_difference;
+            for (std::size_t d = 0; d < D; ++d) {
+                r[d] = own[place_position + d] - other[place_position + d];
+                v_difference[d] = own[place_velocity + d] - other[place_velocity + d];
+            }
+            const Lanes r2 = dot(r, r);
+            const Lanes factor =
+                0.5 * (kernel_.factor(r2, own[place_inverse_h]) + kernel_.factor(r2, other[place_inverse_h]));
+            const Lanes h = 0.5 * (own[place_h] + other[place_h]);
+            const Lanes mu = min(h * dot(r, v_difference) / (r2 + 0.01 * h * h), Lanes(0.0));
+            const Lanes c = 0.5 * (own[place_sound_speed] + other[place_sound_speed]);
+            const Lanes viscosity =
+                (beta_ * mu - alpha_ * c) * mu / (own[place_density] + other[place_density]);  // half of it
+            viscous_speed = max(viscous_speed, select(mu < 0, alpha_ * c - 2 * beta_ * mu, Lanes(0.0)));
             // Each particle's own stress does the work of its own compression, which keeps cold gas next to
             // hot gas from cooling below zero; the viscosity heats both alike.
-            const double p_j = values[pressure][k] * inverse_rho2_j;
-            const double weight = values[mass][k] * factor;
-            double power = 0;
-            for (int a = 0; a < D; ++a) {
-                double own = -(p_i + 0.5 * viscosity) * r[a], other = -(p_j + 0.5 * viscosity) * r[a];
-                if constexpr (strength)
-                    for (int b = 0; b < D; ++b) {
-                        const int c_ab = symmetric_index<D>(a < b ? a : b, a < b ? b : a);
-                        own += s_i[c_ab] * r[b];
-                        other += s[c_ab][k] * inverse_rho2_j * r[b];
-                    }
-                terms[a][k] = weight * (own + other);
-                power += weight * (own * v[a][k] + other * v_i[a]);
+            const Lanes weight =
+                select(first_lanes(partners.size() - k), other[place_mass] * factor, Lanes(0.0));
+            const auto of_own = traction(own, own[place_pressure] + viscosity, r),
+                       of_other = traction(other, other[place_pressure] + viscosity, r);
+            Lanes work = 0;
+            for (std::size_t a = 0; a < D; ++a) {
+                force[a].add(k, weight * (of_own[a] + of_other[a]));
+                work += of_own[a] * other[place_velocity + a] + of_other[a] * own[place_velocity + a];
             }
-            terms[D][k] = power;
+            power.add(k, weight * work);
         }
-        for (int d = 0; d <= D; ++d) {
-            double total = 0;
-            const double* term = terms[d];
-#pragma omp simd reduction(+ : total)
-            for (std::size_t k = 0; k < n; ++k) total += term[k];
-            (d < D ? acceleration_[d < D ? d : 0] : power_)[i] = total;
-        }
-        viscous_speed_[i] = viscous_speed;
+        for (std::size_t a = 0; a < D; ++a) acceleration_[a][i] = force[a].total();
+        power_[i] = power.total();
+        viscous_speed_[i] = hmax(viscous_speed);
     }
 
     const Kernel kernel_;
-    const Settings settings_;
-    std::array<const double*, D> position_, velocity_;
-    std::array<const double*, scalar_count> scalars_;
-    std::array<const double*, symmetric_count<D>> stress_{};
+    const double alpha_, beta_;
     std::array<double*, D> acceleration_;
     double *power_, *viscous_speed_;
     Partners<D> partners_;
-    PartnerValues<D> x_, v_;
-    PartnerValues<scalar_count> values_;
-    PartnerValues<symmetric_count<D>> stresses_;
-    std::array<AlignedValues, D + 1> terms_;
+    PairRecords<record_size> records_;
 };
 
 template <class Pass>
@@ -146,9 +139,11 @@ void standard_pass(ParticleSet& particles, const CellTable& table, Cells which, 
         constexpr int D = dimension;
         with_kernel<D>(settings, [&]<class Kernel>(const Kernel& kernel) {
             if (particles.has(field::predicted_stress))
-                run(StandardPass<D, Kernel, true>(particles, settings, kernel), table, which, count);
+                run(StandardPass<D, Kernel, true>(particles, table, which, settings, kernel), table, which,
+                    count);
             else
-                run(StandardPass<D, Kernel, false>(particles, settings, kernel), table, which, count);
+                run(StandardPass<D, Kernel, false>(particles, table, which, settings, kernel), table, which,
+                    count);
         });
     });
 }

@@ -280,6 +280,8 @@ void Recorder::write_performance(const Simulation& simulation, const PhaseTimer&
     if (const gravity::Counts* counts = simulation.gravity_counts())
         gravity = fmt::format("\"gravity_interactions\": {}, \"gravity_bytes_of_a_rank\": {}, ",
                               comm_.all_sum(counts->interactions()), comm_.all_max(counts->bytes_sent));
+    const std::uint64_t copies =
+        comm_.all_max(static_cast<std::uint64_t>(simulation.particles().halo_size()));
     agree_on_root(comm_, [&] {
         std::string phases;
         for (const auto& row : rows)
@@ -288,9 +290,10 @@ void Recorder::write_performance(const Simulation& simulation, const PhaseTimer&
         file << fmt::format(
             "{{\"ranks\": {}, \"particles\": {}, \"steps\": {}, \"seconds\": {:.6g}, \"pairs\": {}, "
             "\"field_bytes_per_particle\": {}, \"peak_memory_bytes\": {}, \"messages_of_a_rank\": {}, "
-            "\"message_bytes_of_a_rank\": {}, {}\"imbalance\": {:.4g}, \"phase_seconds\": {{{}}}}}\n",
+            "\"message_bytes_of_a_rank\": {}, \"copies_of_a_rank\": {}, {}\"imbalance\": {:.4g}, "
+            "\"phase_seconds\": {{{}}}}}\n",
             comm_.size(), simulation.total_particles(), simulation.step_count() - first_step_, seconds, pairs,
-            simulation.particles().bytes_per_particle(), memory, messages, bytes, gravity,
+            simulation.particles().bytes_per_particle(), memory, messages, bytes, copies, gravity,
             simulation.decomposition().measured_imbalance(), phases);
         file.close();
         if (!file)

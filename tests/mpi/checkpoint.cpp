@@ -8,6 +8,7 @@
 
 #include "agreed_failure.hpp"
 #include "io/hashing.hpp"
+#include "io/id_order.hpp"
 #include "random_particles.hpp"
 
 namespace talus {
@@ -19,6 +20,7 @@ using testing::SharedFolder;
 using testing::some_state;
 
 constexpr std::uint64_t count = 3 * 4096 + 17;
+constexpr std::uint64_t several_slabs = 2 * rows_per_slab + 4096 + 17;  // on one rank, and on each of two
 
 std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -35,7 +37,7 @@ TEST(Checkpoint, RoundTripIsExact) {
     const Communicator comm(MPI_COMM_WORLD);
     for (const int dimension : {1, 2, 3}) {
         const SharedFolder folder(comm);
-        const ParticleSet rock = random_set(comm, count, 1, dimension);
+        const ParticleSet rock = random_set(comm, several_slabs, 1, dimension);
         const ParticleSet dust = random_set(comm, 3, 2, dimension, "dust");
         const ParticleSet none = random_set(comm, 0, 2, dimension, "none");
         const RunState state = some_state(42);
@@ -54,7 +56,7 @@ TEST(Checkpoint, RoundTripIsExact) {
         EXPECT_EQ(again.numbers, state.numbers);
         EXPECT_EQ(again.materials, state.materials);
         EXPECT_TRUE(std::signbit(again.numbers.at("energy at start")));
-        EXPECT_EQ(comm.all_sum(rock_again.size()), count);
+        EXPECT_EQ(comm.all_sum(rock_again.size()), several_slabs);
         EXPECT_EQ(none_again.size(), 0U);
 
         // Each particle's bits depend on its id only: make them again from the ids that were read.
@@ -74,14 +76,14 @@ TEST(Checkpoint, FileDoesNotDependOnRanksOrScattering) {
     const Communicator comm(MPI_COMM_WORLD);
     const Communicator self(MPI_COMM_SELF);
     const SharedFolder folder(comm);
-    const ParticleSet here = random_set(comm, count, 1), there = random_set(comm, count, 2);
+    const ParticleSet here = random_set(comm, several_slabs, 1), there = random_set(comm, several_slabs, 2);
     write_checkpoint(comm, folder.path / "a", some_state(1), {&here});
     write_checkpoint(comm, folder.path / "b", some_state(1), {&there});
     if (comm.is_root()) {
-        const ParticleSet alone = random_set(self, count, 3);
+        const ParticleSet alone = random_set(self, several_slabs, 3);
         write_checkpoint(self, folder.path / "c", some_state(1), {&alone});
         const std::string first = bytes_of(folder.path / "a/checkpoint_000000001.h5");
-        EXPECT_GT(first.size(), count * here.bytes_per_particle() / 2);
+        EXPECT_GT(first.size(), several_slabs * here.bytes_per_particle() / 2);
         EXPECT_TRUE(first == bytes_of(folder.path / "b/checkpoint_000000001.h5"));
         EXPECT_TRUE(first == bytes_of(folder.path / "c/checkpoint_000000001.h5"));
     }

@@ -186,24 +186,6 @@ TEST(Partners, OneRadiusForEachParticle) {
     EXPECT_EQ(exact.count(), 0u) << "a distance equal to the radius is outside";
 }
 
-TEST(Partners, GatherCopiesTheirValues) {
-    const std::vector<double> x{0, 0.1, 0.2, 5, 0.3};
-    const std::vector<std::uint8_t> body{4, 5, 6, 7, 8};
-    const std::vector<talus::Run> runs{{0, 5}};
-    const std::vector<double> radius(5, 1.0);
-    Partners<1> partners({x.data()}, radius.data(), 1);
-    partners.enter({0, 0, 5, false, false}, runs);
-    partners.find(1, 1);
-    AlignedValues positions, bodies;
-    partners.gather(x.data(), positions);
-    partners.gather(body.data(), bodies);
-    ASSERT_EQ(partners.count(), 3u);
-    EXPECT_EQ(std::vector<double>(positions.data(), positions.data() + 3),
-              (std::vector<double>{0, 0.2, 0.3}));
-    EXPECT_EQ(std::vector<double>(bodies.data(), bodies.data() + 3), (std::vector<double>{4, 6, 8}));
-    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(positions.data()) % 64, 0u);
-}
-
 TEST(Partners, NoneInAnEmptyTable) {
     CellTable table;
     table.build({}, 3, 2);
