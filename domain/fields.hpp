@@ -183,6 +183,8 @@ inline constexpr Field<double> volume_curvature{
     "volume_curvature", "m kg-1", symmetric_tensor, work, halo, "second derivatives of the specific volume"};
 inline constexpr Field<std::uint64_t> fragment{
     "fragment", "1", scalar, work, halo, "smallest id of the particles that hold together with this one"};
+inline constexpr Field<std::uint8_t> remnant{
+    "remnant", "1", scalar, work, owner, "which remnant binds the particle: 1 is the largest, 0 none"};
 }  // namespace field
 
 }  // namespace talus

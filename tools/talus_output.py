@@ -21,6 +21,8 @@ DATASETS = {
     "mass": ("Masses", "Mass"),
     "id": ("ParticleIDs",),
     "body": ("BodyIDs",),
+    "remnant": ("Remnant",),
+    "fragment": ("Fragment",),
 }
 
 
@@ -153,6 +155,22 @@ def read_fragments(folder):
     figures = path.with_name("analysis.json")
     damaged = json.loads(figures.read_text(encoding="utf-8")) if figures.is_file() else {}
     return np.sort(fractions)[::-1], damaged.get("fully_damaged_fraction")
+
+
+def read_remnants(folder):
+    """[(figures of its body from analysis.json, Snapshot's indices of that body), ...], Snapshot of all that is
+    bound; ([], None) if the run was not analysed for remnants."""
+    figures, particles = Path(folder) / "analysis.json", Path(folder) / "remnants_000000.hdf"
+    if not figures.is_file() or not particles.is_file():
+        return [], None
+    listed = json.loads(figures.read_text(encoding="utf-8")).get("remnants", [])
+    snapshot = read_snapshot(particles)
+    bodies = []
+    for number, remnant in enumerate(listed, 1):
+        if body := remnant.get("body"):
+            chosen = (snapshot["remnant"] == number) & (snapshot["fragment"] == body["label"])
+            bodies.append((body, np.flatnonzero(chosen)))
+    return bodies, snapshot
 
 
 def to_numbers(row):

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "comm/communicator.hpp"
+#include "io/run_state.hpp"
 #include "io/scene.hpp"
 #include "src/analysis/fragments.hpp"
+#include "src/analysis/remnants.hpp"
 #include "src/setup/bodies.hpp"
 #include "src/simulation.hpp"
 
@@ -31,31 +33,37 @@ struct AnalysisPlan {
     bool fragments = false;
     FragmentRules rules;
     std::optional<Antipode> antipode;
+    std::optional<RemnantRules> remnants;
+
+    bool asks_for_anything() const { return fragments || remnants; }
 };
 
 /// Reads [analysis] (keys: docs/analysis.md). Faults are recorded in the scene.
 AnalysisPlan read_analysis(const Section& table, const std::vector<Body>& bodies, const Setup& setup);
 
-/// Figures of a broken body.
+/// What came out: fragments and what is told of them if asked for, remnants if asked for.
 struct Breakup {
     double mass = 0;           ///< of the bodies looked at, whole and dust [kg]
-    double fully_damaged = 0;  ///< share of it with D = 1
-    double intact = 0;         ///< share of it in fragments
+    Point velocity{};          ///< of their centre of mass [m/s]
+    double fully_damaged = 0;  ///< share of the mass with D = 1
+    double in_fragments = 0;   ///< share of the mass
     std::vector<Fragment> fragments;
     std::optional<double> antipode_speed;  ///< mean outward velocity around the antipode [m/s]
     double antipode_mass = 0;              ///< that this is the mean of [kg]
+    std::optional<Remnants> remnants;
 };
 
 /// Collective.
 Breakup analyse(const Communicator& comm, const AnalysisPlan& plan, const Box& box,
                 const ParticleSet& particles);
 
-/// Writes `folder`/fragments.csv (the heaviest first) and `folder`/analysis.json. Throws AgreedError (exit
-/// code 3). Collective.
-void write_breakup(const Communicator& comm, const std::filesystem::path& folder, double time,
+/// Writes to `folder` analysis.json; fragments.csv and distribution.csv (the heaviest first) if fragments
+/// were asked for; the particles of the remnants as a snapshot if those were. Throws AgreedError (exit code
+/// 3). Collective.
+void write_breakup(const Communicator& comm, const std::filesystem::path& folder, const RunState& state,
                    const AnalysisPlan& plan, const Breakup& breakup);
 
 /// The figures in a few words, for people.
-std::string describe(const Breakup& breakup);
+std::string describe(const AnalysisPlan& plan, const Breakup& breakup);
 
 }  // namespace talus

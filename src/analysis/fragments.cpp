@@ -1,6 +1,7 @@
 #include "src/analysis/fragments.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <span>
 
@@ -8,6 +9,7 @@
 #include "comm/exact_sum.hpp"
 #include "domain/partners.hpp"
 #include "physics/sph/pass_support.hpp"
+#include "src/analysis/selection.hpp"
 
 namespace talus {
 
@@ -34,29 +36,19 @@ class DisjointSets {
 };
 
 /// The particles that can belong to fragments, as a set of their own.
-ParticleSet intact_particles(const ParticleSet& particles, const FragmentRules& rules) {
-    ParticleSet intact("fragments", particles.dimension());
-    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{&field::velocity, &field::mass,
-                                                                         &field::body, &field::fragment})
-        intact.add(*info);
+ParticleSet linkable_particles(const ParticleSet& particles, const FragmentRules& rules) {
     const std::uint8_t* body = particles.data(field::body);
-    const double* damage = particles.has(field::damage) ? particles.data(field::damage) : nullptr;
-    std::vector<std::size_t> chosen;
-    for (std::size_t i = 0; i < particles.size(); ++i)
+    const bool chooses = !rules.all_matter && particles.has(field::damage);
+    const double* damage = chooses ? particles.data(field::damage) : nullptr;
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t i = 0; i < particles.size(); ++i)
         if (rules.linking_length[body[i]] > 0 && !(damage && damage[i] >= rules.damage_threshold))
             chosen.push_back(i);
-    intact.resize(chosen.size());
-    const auto copy = [&](const auto& field) {
-        for (int c = 0; c < component_count(field.shape, particles.dimension()); ++c)
-            for (std::size_t k = 0; k < chosen.size(); ++k)
-                intact.data(field, c)[k] = particles.data(field, c)[chosen[k]];
-    };
-    copy(field::id);
-    copy(field::position);
-    copy(field::velocity);
-    copy(field::mass);
-    copy(field::body);
-    return intact;
+    const FieldInfo* const fields[] = {&field::velocity, &field::mass, &field::body, &field::damage,
+                                       &field::smoothing_length};
+    ParticleSet linkable = selected("fragments", particles, chosen, fields);
+    linkable.add(field::fragment);
+    return linkable;
 }
 
 /// Joins linked particles, copies included.
@@ -70,9 +62,12 @@ void join_linked(const ParticleSet& intact, const CellTable& table, const Fragme
     table.for_each_own(Cells::all, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
         partners.enter(cell, runs);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            partners.find(i, 1);
+            if (rules.all_matter)
+                partners.find_mutual(i, 1);
+            else
+                partners.find(i, 1);
             for (const std::uint32_t k : partners.index())
-                if (body[k] == body[i]) sets.join(i, k);
+                if (rules.all_matter || body[k] == body[i]) sets.join(i, k);
         }
     });
 }
@@ -104,13 +99,13 @@ enum Sum { mass_sum, centre_sum, velocity_sum = centre_sum + 3, sum_count = velo
 
 /// A fragment while its particles are being added up.
 struct Tally {
-    std::uint8_t body = 0;
+    std::uint8_t body = std::numeric_limits<std::uint8_t>::max();
     std::uint64_t particles = 0;
     std::array<ExactSum, sum_count> sums;
 
     void add(const ParticleSet& intact, std::size_t i) {
         const double mass = intact.data(field::mass)[i];
-        body = intact.data(field::body)[i];
+        body = std::min(body, intact.data(field::body)[i]);
         ++particles;
         sums[mass_sum].add(mass);
         for (int a = 0; a < intact.dimension(); ++a) {
@@ -191,7 +186,7 @@ void reduce_shared(const Communicator& comm, const ByLabel& own, std::span<const
         }
         ExactSum::all_reduce(comm, sums);
         comm.all_sum(std::span<std::uint64_t>(counts));
-        comm.all_max(std::span<std::uint64_t>(bodies));
+        comm.all_min(std::span<std::uint64_t>(bodies));
         for (std::size_t k = 0; k < part.size(); ++k) {
             Tally total{static_cast<std::uint8_t>(bodies[k]), counts[k], {}};
             std::copy_n(sums.begin() + static_cast<std::ptrdiff_t>(k * sum_count), sum_count,
@@ -203,28 +198,29 @@ void reduce_shared(const Communicator& comm, const ByLabel& own, std::span<const
 
 }  // namespace
 
-std::vector<Fragment> find_fragments(const Communicator& comm, const Box& box, const ParticleSet& particles,
-                                     const FragmentRules& rules) {
-    ParticleSet intact = intact_particles(particles, rules);
-    if (comm.all_sum(static_cast<std::uint64_t>(intact.size())) == 0) return {};
+LinkedParticles link_particles(const Communicator& comm, const Box& box, const ParticleSet& particles,
+                               const FragmentRules& rules) {
+    LinkedParticles linked{linkable_particles(particles, rules), {}};
+    ParticleSet& set = linked.particles;
+    if (comm.all_sum(static_cast<std::uint64_t>(set.size())) == 0) return linked;
 
     const CellGrid grid(box, *std::max_element(rules.linking_length.begin(), rules.linking_length.end()), 1);
     Decomposition decomposition(comm, PartitionMethod::metis);
-    decomposition.expect(intact);
-    decomposition.divide(intact, grid);
-    decomposition.arrange(intact, grid);
+    decomposition.expect(set);
+    decomposition.divide(set, grid);
+    decomposition.arrange(set, grid);
     Halo& halo = decomposition.halo();
-    halo.begin(intact, {&field::position, &field::body});
+    halo.begin(set, {&field::position, &field::body});
     halo.finish();
-    std::copy_n(intact.data(field::id), intact.size(), intact.data(field::fragment));
-    DisjointSets sets(intact.size_with_halo());
+    std::copy_n(set.data(field::id), set.size(), set.data(field::fragment));
+    DisjointSets sets(set.size_with_halo());
     sph::with_dimension(
-        intact, [&](auto dimension) { join_linked<dimension>(intact, decomposition.table(), rules, sets); });
-    spread_labels(comm, intact, halo, sets);
+        set, [&](auto dimension) { join_linked<dimension>(set, decomposition.table(), rules, sets); });
+    spread_labels(comm, set, halo, sets);
 
-    const ByLabel own(intact);
-    const std::vector<std::uint64_t> shared = shared_labels(comm, intact, own.labels());
-    std::vector<Fragment> fragments;
+    const ByLabel own(set);
+    const std::vector<std::uint64_t> shared = shared_labels(comm, set, own.labels());
+    std::vector<Fragment>& fragments = linked.fragments;
     for (const std::uint64_t label : own.labels())
         if (!std::binary_search(shared.begin(), shared.end(), label))
             fragments.push_back(own.tally(label).fragment(label));
@@ -233,7 +229,12 @@ std::vector<Fragment> find_fragments(const Communicator& comm, const Box& box, c
     std::sort(fragments.begin(), fragments.end(), [](const Fragment& a, const Fragment& b) {
         return a.mass != b.mass ? a.mass > b.mass : a.label < b.label;
     });
-    return fragments;
+    return linked;
+}
+
+std::vector<Fragment> find_fragments(const Communicator& comm, const Box& box, const ParticleSet& particles,
+                                     const FragmentRules& rules) {
+    return link_particles(comm, box, particles, rules).fragments;
 }
 
 }  // namespace talus

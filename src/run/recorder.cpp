@@ -251,10 +251,10 @@ void Recorder::write_snapshot_now(Simulation& simulation, std::uint64_t index) {
 
 void Recorder::write_analysis(const Simulation& simulation) {
     const AnalysisPlan& plan = setup_.analysis;
-    if (!plan.fragments) return;
+    if (!plan.asks_for_anything()) return;
     const Breakup breakup = analyse(comm_, plan, setup_.simulation.box, simulation.particles());
-    write_breakup(comm_, folder_, simulation.time(), plan, breakup);
-    if (comm_.is_root()) files_->log->info("{}", describe(breakup));
+    write_breakup(comm_, folder_, run_state(simulation, scene_), plan, breakup);
+    if (comm_.is_root()) files_->log->info("{}", describe(plan, breakup));
 }
 
 void Recorder::write_diagnostics(Simulation& simulation) {

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <random>
 
+#include "tests/support/shares.hpp"
+
 namespace talus::test {
 namespace {
 
@@ -31,30 +33,11 @@ struct Rubble {
     }
     static std::uint64_t id(std::size_t k) { return 3 * ((k * 7919) % 1000003) + 5; }  // in no order
 
-    /// The share of a rank, in an order and at an owner that `salt` chooses.
     ParticleSet share(int rank, int ranks, unsigned salt) const {
-        ParticleSet set("rubble", dimension);
-        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{&field::velocity, &field::mass,
-                                                                             &field::body, &field::damage})
-            set.add(*info);
-        std::mt19937 random(salt);
-        std::vector<std::size_t> mine;
+        std::vector<Grain> grains;
         for (std::size_t k = 0; k < position.size(); ++k)
-            if (static_cast<int>(random() % static_cast<unsigned>(ranks)) == rank) mine.push_back(k);
-        std::shuffle(mine.begin(), mine.end(), random);
-        set.resize(mine.size());
-        for (std::size_t i = 0; i < mine.size(); ++i) {
-            const std::size_t k = mine[i];
-            set.data(field::id)[i] = id(k);
-            set.data(field::mass)[i] = mass(k);
-            set.data(field::damage)[i] = damage[k];
-            set.data(field::body)[i] = body[k];
-            for (int a = 0; a < dimension; ++a) {
-                set.data(field::position, a)[i] = position[k][static_cast<std::size_t>(a)];
-                set.data(field::velocity, a)[i] = velocity(k)[static_cast<std::size_t>(a)];
-            }
-        }
-        return set;
+            grains.push_back({id(k), position[k], velocity(k), mass(k), damage[k], body[k]});
+        return share_of(grains, dimension, rank, ranks, salt);
     }
 };
 
@@ -81,12 +64,15 @@ std::vector<Piece> brute_force(const Rubble& rubble, const FragmentRules& rules)
     std::vector<std::size_t> piece(count);
     std::iota(piece.begin(), piece.end(), std::size_t{0});
     const auto whole = [&](std::size_t k) {
-        return rubble.damage[k] < rules.damage_threshold && rules.linking_length[rubble.body[k]] > 0;
+        return (rules.all_matter || rubble.damage[k] < rules.damage_threshold) &&
+               rules.linking_length[rubble.body[k]] > 0;
     };
     for (std::size_t k = 0; k < count; ++k)
         for (std::size_t l = 0; l < k; ++l) {
-            const double length = rules.linking_length[rubble.body[k]];
-            if (!whole(k) || !whole(l) || rubble.body[k] != rubble.body[l] || piece[k] == piece[l] ||
+            const double length =
+                std::max(rules.linking_length[rubble.body[k]], rules.linking_length[rubble.body[l]]);
+            const bool parted = !rules.all_matter && rubble.body[k] != rubble.body[l];
+            if (!whole(k) || !whole(l) || parted || piece[k] == piece[l] ||
                 !(distance2(rubble, k, l) < length * length))
                 continue;
             const std::size_t from = piece[k], to = piece[l];
@@ -129,13 +115,15 @@ void expect_fragments_are_those_of_brute_force(const Rubble& rubble, const Fragm
         ASSERT_TRUE(by_label.contains(piece.label));
         const Fragment& fragment = by_label.at(piece.label);
         EXPECT_EQ(fragment.particles, piece.members.size());
-        EXPECT_EQ(fragment.body, rubble.body[piece.members.front()]);
         double mass = 0, centre = 0, velocity = 0;
+        std::uint8_t least_body = 255;
         for (const std::size_t k : piece.members) {
+            least_body = std::min(least_body, rubble.body[k]);
             mass += rubble.mass(k);
             centre += rubble.mass(k) * rubble.position[k][0];
             velocity += rubble.mass(k) * rubble.velocity(k)[0];
         }
+        EXPECT_EQ(fragment.body, least_body);
         EXPECT_NEAR(fragment.mass, mass, 1e-12 * mass);
         EXPECT_NEAR(fragment.centre[0], centre / mass, 1e-10);
         EXPECT_NEAR(fragment.velocity[0], velocity / mass, 1e-10);
@@ -163,6 +151,7 @@ TEST(Fragments, RandomCloudsAreThoseOfBruteForce) {
             const double length = std::array{0.004, 0.035, 0.095}[static_cast<std::size_t>(dimension - 1)];
             expect_fragments_are_those_of_brute_force(rubble, {0.8, {length, 1.3 * length}});
             expect_fragments_are_those_of_brute_force(rubble, {0.3, {0, length}});
+            expect_fragments_are_those_of_brute_force(rubble, {0.3, {0.6 * length, 0.8 * length}, true});
         }
 }
 

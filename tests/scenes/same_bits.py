@@ -1,5 +1,6 @@
 """Every scene of runs/ gives the same bits on any number of ranks, for any map of cells to ranks, and across a restart
-on another number of ranks: `talus hash` of the state after some steps must not change.
+on another number of ranks: `talus hash` of the state after some steps must not change, nor must what the analysis finds
+of it, at the end of the run or from its checkpoint.
 
 usage: same_bits.py PROGRAM MPIRUN RUNS_FOLDER [SCENE ...]
 """
@@ -8,6 +9,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import tomllib
 
 STEPS = 14
 STOP = 5
@@ -35,26 +37,56 @@ class Runner:
             self.count += 1
             out = self.folder / f"{scene.name}_{self.count}"
         arguments = ["run", scene, "--quick", "--steps", steps, "--out", out, "--set",
-                     f"run.decomposition={partition}", "--set", "run.rebalance_interval=2"]
+                     f"run.decomposition={partition}", "--set", "run.rebalance_interval=2", *remnants_asked(scene)]
         self.command(arguments + (["--restart", "latest"] if restart else []), ranks)
         return out
 
     def hash(self, out):
         return self.command(["hash", out], 0).split()[0]
 
+    def analyse(self, scene, out, ranks):
+        self.command(["analyse", scene, "--quick", "--out", out, *remnants_asked(scene)], ranks)
+
+
+def is_analysed(scene):
+    return "analysis" in tomllib.loads((scene / "scene.toml").read_text())
+
+
+def remnants_asked(scene):
+    """Options that make an analysed scene look for remnants."""
+    return ["--set", "analysis.remnants=true"] if is_analysed(scene) else []
+
+
+def findings(out):
+    """What the analysis wrote, but the snapshot of remnants: it holds the scene with the decomposition's name."""
+    names = ("analysis.json", "fragments.csv", "distribution.csv")
+    return {name: (out / name).read_bytes() for name in names if (out / name).exists()}
+
 
 def check(runner, scene):
-    reference = runner.hash(runner.run(scene, STEPS, 0, "metis"))
+    first = runner.run(scene, STEPS, 0, "metis")
+    reference, found_first = runner.hash(first), findings(first)
     wrong = []
+    if bool(found_first) != is_analysed(scene):
+        wrong.append("the run ended without its analysis")
     for ranks, partition in MAPS.items():
-        found = runner.hash(runner.run(scene, STEPS, ranks, partition))
+        out = runner.run(scene, STEPS, ranks, partition)
+        found = runner.hash(out)
         if found != reference:
             wrong.append(f"{ranks} ranks, {partition}: {found}")
+        if findings(out) != found_first:
+            wrong.append(f"{ranks} ranks, {partition}: another analysis")
+    for ranks in (1, 3) if found_first else ():
+        for name in found_first:
+            (first / name).unlink()
+        runner.analyse(scene, first, ranks)
+        if findings(first) != found_first:
+            wrong.append(f"analysed after the run on {ranks} ranks: another analysis")
     for before, after, partition in [(2, 3, "scrambled"), (5, 1, "metis")]:
         out = runner.run(scene, STOP, before, partition)
         runner.run(scene, STEPS, after, "metis", out, restart=True)
         found = runner.hash(out)
-        if found != reference:
+        if found != reference or findings(out) != found_first:
             wrong.append(f"stopped at step {STOP} on {before} ranks, restarted on {after}: {found}")
     print(f"{scene.name}: {'same bits, ' + reference if not wrong else 'DIFFERS from ' + reference}")
     for line in wrong:

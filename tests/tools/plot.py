@@ -143,6 +143,21 @@ class Plot(unittest.TestCase):
         (self.folder / "analysis.json").write_text('{"fully_damaged_fraction": 0.6}')
         self.assertEqual(self.plot(), {"fragments.png"})
 
+    def test_remnants(self):
+        x = ball(3, 3e4, 3e3) * (1.5, 1, 0.7)
+        fields = {"Coordinates": np.vstack([x + 1e6, x[:5] * 9]), "Velocities": np.zeros((len(x) + 5, 3))}
+        fields["Damage"] = np.linspace(0, 1, len(x) + 5)
+        fields["Remnant"] = np.repeat(np.uint8([1, 2]), [len(x), 5])
+        fields["Fragment"] = np.repeat(np.uint64([17, 3]), [len(x), 5])
+        write_series(self.folder, "remnants", 3, [(9.0, fields)])
+        body = {"label": 17, "centre": [1e6] * 3, "axes": np.eye(3).tolist(), "extents": [9e4, 6e4, 4.2e4],
+                "semi_axes": [4.5e4, 3e4, 2.1e4], "period": 2e4, "b_over_a": 0.667, "c_over_a": 0.467,
+                "mass_fraction": 0.7}
+        single = dict(body, label=3, period=None)
+        figures = {"remnants": [{"body": body}, {"body": single}]}
+        (self.folder / "analysis.json").write_text(json.dumps(figures))
+        self.assertEqual(self.plot(), {"remnant_1.png"})  # too few particles are no picture
+
     def test_no_fragments(self):
         (self.folder / "fragments.csv").write_text("rank,label,mass [kg],mass_fraction\n")
         self.plot(code=1)
