@@ -43,8 +43,8 @@ std::vector<double> linking_lengths(const std::vector<Body>& bodies, double spac
 RemnantRules read_remnants(const Section& table, const std::vector<Body>& bodies, const Setup& setup,
                            const FragmentRules& all_matter) {
     const auto end = setup.box.boundary.begin() + setup.box.dimension;
-    if (setup.box.dimension != 3 || std::any_of(setup.box.boundary.begin(), end,
-                                                [](Boundary b) { return b != Boundary::open; }))
+    if (setup.box.dimension != 3 ||
+        std::any_of(setup.box.boundary.begin(), end, [](Boundary b) { return b != Boundary::open; }))
         table.error("remnants", "needs dimension = 3 and box.boundaries that are all \"open\"");
     RemnantRules rules;
     rules.binding.count = static_cast<std::size_t>(table.integer("remnant_count", 2, 1, 250));
@@ -74,8 +74,8 @@ AnalysisPlan read_analysis(const Section& table, const std::vector<Body>& bodies
             table.choice("link", {"undamaged", "all"}, any_cracks ? "undamaged" : "all") == "undamaged";
         const double threshold = table.number("damage_threshold", "1", 1.0, {0, 1, true});
         if (undamaged && !any_cracks) table.error("link", "no body has a material that cracks");
-        plan.rules = undamaged ? FragmentRules{threshold, linking_lengths(bodies, spacings, cracks)}
-                               : all_matter;
+        plan.rules =
+            undamaged ? FragmentRules{threshold, linking_lengths(bodies, spacings, cracks)} : all_matter;
         if (bodies.empty()) return plan;
         plan.antipode = read_antipode(table, bodies, any_cracks ? first : 0, setup.box.dimension);
     }

@@ -136,8 +136,8 @@ class BindingSearch {
 
 }  // namespace
 
-Binding find_bound(const Communicator& comm, std::span<const BindingUnit> units, std::span<const Fragment> groups,
-             const BindingRules& rules) {
+Binding find_bound(const Communicator& comm, std::span<const BindingUnit> units,
+                   std::span<const Fragment> groups, const BindingRules& rules) {
     BindingSearch search(comm, units, rules);
     std::size_t found = 0;
     for (const Fragment& seed : groups) {

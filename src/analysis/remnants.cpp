@@ -102,7 +102,8 @@ MatterFigures figures_of(const Communicator& comm, const ParticleSet& particles,
     const double* damage = has_damage ? particles.data(field::damage) : nullptr;
     std::vector<ExactSum> sums(9);
     for (const std::uint32_t i : chosen) {
-        const Point x = vector_at(particles, field::position, i), v = vector_at(particles, field::velocity, i);
+        const Point x = vector_at(particles, field::position, i),
+                    v = vector_at(particles, field::velocity, i);
         sums[0].add(mass[i]);
         for (std::size_t a = 0; a < 3; ++a) {
             sums[1 + a].add(mass[i] * x[a]);
@@ -160,8 +161,8 @@ BodyFigures shape_of(const Communicator& comm, const ParticleSet& particles,
         // Particles carry no spin of their own: points alone make the inertia that the momentum belongs to.
         const double inertia = trace - points;
         if (inertia > 1e-12 * trace)
-            shape.spin = plus(shape.spin, times(dot(figures.angular_momentum, shape.axes[k]) / inertia,
-                                                shape.axes[k]));
+            shape.spin = plus(shape.spin,
+                              times(dot(figures.angular_momentum, shape.axes[k]) / inertia, shape.axes[k]));
     }
     shape.density = figures.mass / volume;
 
@@ -188,8 +189,9 @@ Remnants find_remnants(const Communicator& comm, const LinkedParticles& linked, 
     const std::vector<std::size_t> set_of =
         sets_of_particles(comm, linked, units, binding, rules.particles_bind);
 
-    const FieldInfo* const fields[] = {&field::velocity, &field::mass, &field::body, &field::damage,
-                                       &field::smoothing_length, &field::fragment};
+    const FieldInfo* const fields[] = {
+        &field::velocity,         &field::mass,    &field::body, &field::damage,
+        &field::smoothing_length, &field::fragment};
     std::vector<std::uint32_t> bound;
     for (std::uint32_t i = 0; i < particles.size(); ++i)
         if (set_of[i] < binding.sets.size()) bound.push_back(i);

@@ -15,19 +15,19 @@ namespace talus {
 /// What is looked for by gravitational binding.
 struct RemnantRules {
     BindingRules binding;
-    bool particles_bind = false;   ///< each particle by itself; else each group as a whole
-    FragmentRules groups;          ///< all matter that touches
-    std::vector<double> spacing;   ///< of the particles of each body: D-th root of their volume [m]
+    bool particles_bind = false;  ///< each particle by itself; else each group as a whole
+    FragmentRules groups;         ///< all matter that touches
+    std::vector<double> spacing;  ///< of the particles of each body: D-th root of their volume [m]
 };
 
 /// Sums over some particles.
 struct MatterFigures {
     std::uint64_t particles = 0;
-    double mass = 0;                       ///< [kg]
-    Point centre{}, velocity{};            ///< of mass [m], [m/s]
-    Point angular_momentum{};              ///< about the centre of mass [kg m2/s]
-    std::optional<double> mean_damage;     ///< by mass
-    std::optional<double> fully_damaged;   ///< share of the mass with D = 1
+    double mass = 0;                      ///< [kg]
+    Point centre{}, velocity{};           ///< of mass [m], [m/s]
+    Point angular_momentum{};             ///< about the centre of mass [kg m2/s]
+    std::optional<double> mean_damage;    ///< by mass
+    std::optional<double> fully_damaged;  ///< share of the mass with D = 1
 };
 
 /// Shape and spin of a body, each particle a cube of its volume.

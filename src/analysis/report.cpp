@@ -191,22 +191,22 @@ std::string describe(const AnalysisPlan& plan, const Breakup& breakup) {
             breakup.fully_damaged));
     if (breakup.antipode_speed)
         parts.push_back(fmt::format("the antipode moves outward at {:.4g} m/s", *breakup.antipode_speed));
-    if (breakup.remnants && breakup.remnants->list.empty())
-        parts.emplace_back("nothing is bound by gravity");
+    if (breakup.remnants && breakup.remnants->list.empty()) parts.emplace_back("nothing is bound by gravity");
     if (breakup.remnants)
         for (std::size_t k = 0; k < breakup.remnants->list.size(); ++k) {
             const Remnant& r = breakup.remnants->list[k];
             const Point& axes = r.shape.semi_axes;
-            parts.push_back(
-                fmt::format("remnant {}: {:.4f} of the mass in {} pieces; its largest piece {:.4f}, b/a {:.3f}, "
-                            "c/a {:.3f}, period {:.4g} h",
-                            k + 1, r.bound.mass / breakup.remnants->mass, r.set.pieces,
-                            r.body.mass / breakup.remnants->mass, axes[1] / axes[0], axes[2] / axes[0],
-                            period(r.shape) / 3600));
+            parts.push_back(fmt::format(
+                "remnant {}: {:.4f} of the mass in {} pieces; its largest piece {:.4f}, b/a {:.3f}, "
+                "c/a {:.3f}, period {:.4g} h",
+                k + 1, r.bound.mass / breakup.remnants->mass, r.set.pieces,
+                r.body.mass / breakup.remnants->mass, axes[1] / axes[0], axes[2] / axes[0],
+                period(r.shape) / 3600));
             if (r.set.unsettled > 0)
-                parts.push_back(fmt::format("{} pieces still joined or left it after {} rounds: its mass is in "
-                                            "doubt by theirs",
-                                            r.set.unsettled, r.set.rounds));
+                parts.push_back(
+                    fmt::format("{} pieces still joined or left it after {} rounds: its mass is in "
+                                "doubt by theirs",
+                                r.set.unsettled, r.set.rounds));
         }
     return fmt::format("{}", fmt::join(parts, "; "));
 }
