@@ -159,6 +159,26 @@ std::string report_of(double time, const AnalysisPlan& plan, const Breakup& brea
     return report.text() + "\n";
 }
 
+void describe_remnants(const Remnants& remnants, std::vector<std::string>& parts) {
+    if (remnants.list.empty()) parts.emplace_back("nothing is bound by gravity");
+    for (std::size_t k = 0; k < remnants.list.size(); ++k) {
+        const Remnant& r = remnants.list[k];
+        const Point& axes = r.shape.semi_axes;
+        std::string text = fmt::format("remnant {}: {:.4f} of the mass, bound by gravity", k + 1,
+                                       r.bound.mass / remnants.mass);
+        if (r.set.pieces > 1) text += fmt::format(", in {} pieces", r.set.pieces);
+        if (r.body.particles > 0)
+            text += fmt::format("; its body {:.4f}, b/a {:.3f}, c/a {:.3f}", r.body.mass / remnants.mass,
+                                axes[1] / axes[0], axes[2] / axes[0]);
+        if (norm(r.shape.spin) > 0) text += fmt::format(", period {:.4g} h", period(r.shape) / 3600);
+        if (r.set.unsettled > 0)
+            text += fmt::format(
+                "; {} units still joined or left it after {} rounds, its mass is in doubt by theirs",
+                r.set.unsettled, r.set.rounds);
+        parts.push_back(std::move(text));
+    }
+}
+
 void write_bound_particles(const Communicator& comm, const std::filesystem::path& folder,
                            const RunState& state, const ParticleSet& bound) {
     if (comm.all_sum(static_cast<std::uint64_t>(bound.size())) == 0) return;
@@ -191,23 +211,7 @@ std::string describe(const AnalysisPlan& plan, const Breakup& breakup) {
             breakup.fully_damaged));
     if (breakup.antipode_speed)
         parts.push_back(fmt::format("the antipode moves outward at {:.4g} m/s", *breakup.antipode_speed));
-    if (breakup.remnants && breakup.remnants->list.empty()) parts.emplace_back("nothing is bound by gravity");
-    if (breakup.remnants)
-        for (std::size_t k = 0; k < breakup.remnants->list.size(); ++k) {
-            const Remnant& r = breakup.remnants->list[k];
-            const Point& axes = r.shape.semi_axes;
-            parts.push_back(fmt::format(
-                "remnant {}: {:.4f} of the mass in {} pieces; its largest piece {:.4f}, b/a {:.3f}, "
-                "c/a {:.3f}, period {:.4g} h",
-                k + 1, r.bound.mass / breakup.remnants->mass, r.set.pieces,
-                r.body.mass / breakup.remnants->mass, axes[1] / axes[0], axes[2] / axes[0],
-                period(r.shape) / 3600));
-            if (r.set.unsettled > 0)
-                parts.push_back(
-                    fmt::format("{} pieces still joined or left it after {} rounds: its mass is in "
-                                "doubt by theirs",
-                                r.set.unsettled, r.set.rounds));
-        }
+    if (breakup.remnants) describe_remnants(*breakup.remnants, parts);
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
