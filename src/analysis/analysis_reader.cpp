@@ -70,8 +70,9 @@ AnalysisPlan read_analysis(const Section& table, const std::vector<Body>& bodies
         std::size_t first = 0;
         while (first < bodies.size() && !cracks(first)) ++first;
         const bool any_cracks = first < bodies.size();
+        const bool looks_at_cracks = any_cracks && !setup.gravity;  // else all ends as rubble
         const bool undamaged =
-            table.choice("link", {"undamaged", "all"}, any_cracks ? "undamaged" : "all") == "undamaged";
+            table.choice("link", {"undamaged", "all"}, looks_at_cracks ? "undamaged" : "all") == "undamaged";
         const double threshold = table.number("damage_threshold", "1", 1.0, {0, 1, true});
         if (undamaged && !any_cracks) table.error("link", "no body has a material that cracks");
         plan.rules =

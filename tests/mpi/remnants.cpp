@@ -344,6 +344,7 @@ TEST(AnalysisTable, DefaultsFollowTheScene) {
     ASSERT_TRUE(heavy.remnants);
     EXPECT_EQ(heavy.remnants->binding.constant, 3);
     EXPECT_EQ(heavy.remnants->binding.count, 2u);
+    EXPECT_TRUE(plan_of("[analysis]\n[gravity]\n", true).rules.all_matter);
     const AnalysisPlan light = plan_of("[analysis]\nremnants = true\nremnant_count = 4\n", true);
     EXPECT_EQ(light.remnants->binding.constant, newton_constant);
     EXPECT_EQ(light.remnants->binding.count, 4u);
