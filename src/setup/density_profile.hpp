@@ -17,8 +17,8 @@ double enclosed_mass(DensityProfile profile, double radius);
 double radius_enclosing(DensityProfile profile, double mass);
 double density_at(DensityProfile profile, double radius);
 
-/// K in P = K rho^2 of a ball in equilibrium with its own gravity, 2 G R^2/pi whatever its mass [m5 kg-1 s-2].
-/// S. Chandrasekhar, An Introduction to the Study of Stellar Structure (1939), chapter IV, n = 1.
+/// K in P = K rho^2 of a ball in equilibrium with its own gravity, 2 G R^2/pi whatever its mass [m5 kg-1
+/// s-2]. S. Chandrasekhar, An Introduction to the Study of Stellar Structure (1939), chapter IV, n = 1.
 double polytropic_constant(double radius, double gravitational_constant);
 
 }  // namespace talus

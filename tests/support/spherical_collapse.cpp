@@ -41,8 +41,8 @@ double SphericalCollapse::step_limit() const {
     for (std::size_t j = 0; j < mass_.size(); ++j) {
         const double sound = std::sqrt(gamma * (pressure_[j] + viscous_[j]) / density_[j]);
         const double closing = std::abs(velocity_[j + 1] - velocity_[j]);
-        least = std::min(least,
-                         courant * (radius_[j + 1] - radius_[j]) / (sound + 2 * quadratic_viscosity * closing));
+        least = std::min(
+            least, courant * (radius_[j + 1] - radius_[j]) / (sound + 2 * quadratic_viscosity * closing));
     }
     return least;
 }
@@ -55,7 +55,8 @@ void SphericalCollapse::accelerate(double time_step) {
         const double outside = i < last ? pressure_[i] + viscous_[i] : 0;
         const double mass = 0.5 * (mass_[i - 1] + (i < last ? mass_[i] : 0));
         const double area = 4 * std::numbers::pi * radius_[i] * radius_[i];
-        velocity_[i] += time_step * (area * (inside - outside) / mass - mass_within_[i] / (radius_[i] * radius_[i]));
+        velocity_[i] +=
+            time_step * (area * (inside - outside) / mass - mass_within_[i] / (radius_[i] * radius_[i]));
     }
 }
 

@@ -28,7 +28,7 @@ class SphericalCollapse {
     void accelerate(double time_step);
     void move(double time_step);
 
-    std::vector<double> radius_, velocity_, mass_within_;             // of the faces, the centre first
+    std::vector<double> radius_, velocity_, mass_within_;               // of the faces, the centre first
     std::vector<double> mass_, energy_, density_, pressure_, viscous_;  // of the shells
     double time_ = 0, last_step_ = 0;
 };

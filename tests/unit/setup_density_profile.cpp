@@ -52,11 +52,12 @@ equation_of_state = { kind = "linear", sound_speed = 1 }
 
 SceneSetup read(const Communicator& comm, const std::string& body, const std::string& rest) {
     const std::string material = body.find("\"rock\"") == std::string::npos ? gas : rock;
-    return read_scene(comm,
-                      Scene::parse("[run]\nend_time = 1\n" + rest + material + "[[body]]\n" + body, "s.toml"));
+    return read_scene(
+        comm, Scene::parse("[run]\nend_time = 1\n" + rest + material + "[[body]]\n" + body, "s.toml"));
 }
 constexpr const char* gravity = "[gravity]\nconstant = 5\n";
-constexpr const char* ball = "material = \"gas\"\nshape = \"sphere\"\nradius = 2\ncentre = [1, 0, 0]\nspacing = 0.2\n";
+constexpr const char* ball =
+    "material = \"gas\"\nshape = \"sphere\"\nradius = 2\ncentre = [1, 0, 0]\nspacing = 0.2\n";
 
 /// Place of a particle relative to the centre of the ball, in units of its radius.
 Point arm(const ParticleSet& particles, std::size_t i) {
@@ -101,12 +102,14 @@ std::string fault_of(const std::string& body, const std::string& rest = gravity)
 TEST(DensityProfiles, AreRefusedWhereTheyMakeNoSense) {
     const std::string polytrope = "density_profile = \"polytrope_1\"\n", start = ball;
     EXPECT_EQ(fault_of(start + polytrope), "");
-    EXPECT_NE(fault_of(start + polytrope, "").find("needs [gravity] or an internal_energy"), std::string::npos);
+    EXPECT_NE(fault_of(start + polytrope, "").find("needs [gravity] or an internal_energy"),
+              std::string::npos);
     EXPECT_EQ(fault_of(start + polytrope + "internal_energy = 1\n", ""), "");
     EXPECT_NE(fault_of(start + polytrope + "inner_radius = 1\n").find("not hollow"), std::string::npos);
     EXPECT_NE(fault_of(start + polytrope + "jitter = 0.1\n").find("even density"), std::string::npos);
     EXPECT_NE(fault_of(start + polytrope + "pressure = 1\n").find("give internal_energy"), std::string::npos);
-    EXPECT_NE(fault_of("material = \"gas\"\nshape = \"ellipsoid\"\nsemi_axes = [1, 1, 1]\nspacing = 0.3\n" + polytrope)
+    EXPECT_NE(fault_of("material = \"gas\"\nshape = \"ellipsoid\"\nsemi_axes = [1, 1, 1]\nspacing = 0.3\n" +
+                       polytrope)
                   .find("only a sphere"),
               std::string::npos);
     EXPECT_NE(fault_of("material = \"rock\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.3\n" + polytrope)
