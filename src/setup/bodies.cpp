@@ -1,5 +1,6 @@
 #include "src/setup/bodies.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -56,6 +57,25 @@ Point velocity_at(const Body& body, const Point& x, const Point& centre_of_mass,
     return plus(field, plus(body.velocity, cross(body.spin, minus(x, centre_of_mass))));
 }
 
+/// Where a point of an even sphere goes so that its distance from the centre encloses the same mass.
+Point displaced(const Body& body, const Point& x) {
+    if (body.profile == DensityProfile::even) return x;
+    const auto& sphere = std::get<SphereShape>(body.shape);
+    const Point arm = minus(x, sphere.centre);
+    const double even = norm(arm) / sphere.radius;
+    if (even == 0) return x;
+    const double radius = radius_enclosing(body.profile, enclosed_mass(DensityProfile::even, even));
+    return plus(sphere.centre, times(radius / even, arm));
+}
+
+/// Density at a particle over the mean of its body. At the centre that of the innermost particle's share.
+double relative_density(const Body& body, const BodyCensus& census, const Point& x) {
+    if (body.profile == DensityProfile::even) return 1;
+    const auto& sphere = std::get<SphereShape>(body.shape);
+    const double least = radius_enclosing(body.profile, 0.5 / static_cast<double>(census.count));
+    return density_at(body.profile, std::max(least, norm(minus(x, sphere.centre)) / sphere.radius));
+}
+
 /// Calls visit(id, position) for every particle of a body.
 template <class Visit>
 void for_each_particle(const Body& body, std::uint64_t first_id, int dimension, std::uint64_t seed,
@@ -63,7 +83,7 @@ void for_each_particle(const Body& body, std::uint64_t first_id, int dimension, 
     const RandomStream displacement{seed, RandomPurpose::positions, 0};
     std::uint64_t id = first_id;
     for_each_point(body.shape, body.cell, body.spacing, dimension, [&](const Point& point) {
-        Point x = point;
+        Point x = displaced(body, point);
         for (int a = 0; a < dimension && body.jitter > 0; ++a)
             x[static_cast<std::size_t>(a)] +=
                 body.jitter * body.spacing *
@@ -100,13 +120,15 @@ void put_particle(ParticleSet& particles, std::size_t i, const NewParticle& made
         particles.data(field::velocity, a)[i] = v[static_cast<std::size_t>(a)];
     }
     particles.data(field::mass)[i] = body.density * census.particle_volume;
-    particles.data(field::internal_energy)[i] = body.internal_energy;
+    const double relative = relative_density(body, census, made.x);
+    particles.data(field::internal_energy)[i] = body.internal_energy * (body.hydrostatic ? relative : 1);
     // A lattice is fitted to a box; other shapes cut it, and keep its spacing.
     const bool fitted = body.cell.fits_boxes && std::holds_alternative<BoxShape>(body.shape);
     particles.data(field::smoothing_length)[i] =
-        eta * (fitted ? std::pow(census.particle_volume, 1.0 / dimension) : body.spacing);
+        eta * (fitted ? std::pow(census.particle_volume, 1.0 / dimension) : body.spacing) /
+        std::pow(relative, 1.0 / dimension);
     particles.data(field::body)[i] = made.body;
-    if (particles.has(field::density)) particles.data(field::density)[i] = body.density;
+    if (particles.has(field::density)) particles.data(field::density)[i] = body.density * relative;
     if (particles.has(field::damage)) particles.data(field::damage)[i] = body.damage;
 }
 

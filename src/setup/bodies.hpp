@@ -9,6 +9,7 @@
 #include "physics/gravity/settings.hpp"
 #include "physics/solid/material.hpp"
 #include "physics/sph/settings.hpp"
+#include "src/setup/density_profile.hpp"
 #include "src/setup/packing.hpp"
 
 namespace talus {
@@ -52,9 +53,11 @@ struct Body {
     Point velocity{};    ///< of the centre of mass [m/s]
     Point spin{};        ///< angular velocity about the centre of mass [rad/s]; in 2D its z component
     VelocityField velocity_field;
-    double density = 0;          ///< [kg/m3]
-    double internal_energy = 0;  ///< [J/kg]
-    double damage = 0;           ///< [1]
+    DensityProfile profile = DensityProfile::even;  ///< of a sphere
+    double density = 0;                             ///< mean [kg/m3]
+    double internal_energy = 0;                     ///< where the density is the mean [J/kg]
+    bool hydrostatic = false;  ///< internal energy in proportion to the density, else even
+    double damage = 0;         ///< [1]
 };
 
 /// What the particles of a body add up to.

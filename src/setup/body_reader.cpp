@@ -116,6 +116,38 @@ double read_energy(const Section& table, const Material& material, double densit
     return (wanted - at_zero) / (at_one - at_zero);
 }
 
+DensityProfile read_profile(const Section& table, const Body& body, const Material& material, int dimension) {
+    const std::string name =
+        table.choice("density_profile", {"even", "inverse_radius", "polytrope_1"}, "even");
+    if (name == "even") return DensityProfile::even;
+    const auto* sphere = std::get_if<SphereShape>(&body.shape);
+    if (!sphere || sphere->inner_radius > 0 || dimension != 3) {
+        table.error("density_profile", "only a sphere in 3D that is not hollow has one; others are even");
+        return DensityProfile::even;
+    }
+    if (!std::holds_alternative<IdealGas>(material.eos) || material.shear_modulus > 0)
+        table.error("density_profile", fmt::format("material '{}' is no ideal gas: where its density is not "
+                                                   "its own, it would burst",
+                                                   material.name));
+    if (body.jitter > 0) table.error("jitter", "is for bodies of even density");
+    if (table.has("pressure")) table.error("pressure", "would vary with the density; give internal_energy");
+    return name == "polytrope_1" ? DensityProfile::polytrope_1 : DensityProfile::inverse_radius;
+}
+
+/// Internal energy of a polytrope that was given none: in equilibrium with its own gravity.
+void balance(const Section& table, const Material& material, double gravitational_constant, Body& body) {
+    if (gravitational_constant == 0) {
+        table.error("density_profile", "a polytrope needs [gravity] or an internal_energy of its own");
+        return;
+    }
+    const auto* gas = std::get_if<IdealGas>(&material.eos);
+    if (!gas) return;
+    const double radius = std::get<SphereShape>(body.shape).radius;
+    body.hydrostatic = true;
+    body.internal_energy =
+        polytropic_constant(radius, gravitational_constant) * body.density / (gas->gamma - 1);
+}
+
 }  // namespace
 
 Body read_body(const Section& table, const Material& material, const BodyContext& context) {
@@ -135,7 +167,11 @@ Body read_body(const Section& table, const Material& material, const BodyContext
     }
     body.spin = read_spin(table, dimension);
     body.velocity_field = read_velocity_field(table.section("velocity_field"), dimension);
-    body.internal_energy = read_energy(table, material, body.density);
+    body.profile = read_profile(table, body, material, dimension);
+    if (body.profile == DensityProfile::polytrope_1 && !table.has("internal_energy"))
+        balance(table, material, context.gravitational_constant, body);
+    else
+        body.internal_energy = read_energy(table, material, body.density);
     if (material.fracture)
         body.damage = table.number("damage", "1", 0.0, {0, 1});
     else if (table.has("damage"))

@@ -188,14 +188,16 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     setup.bodies.reserve(tables.size());
     for (std::size_t b = 0; b < tables.size(); ++b) {
         setup.simulation.materials.push_back(find_material(comm, scene, tables[b]));
-        const BodyContext context{.comm = comm,
-                                  .scene = scene,
-                                  .dimension = box.dimension,
-                                  .domain = {box.lower, box.upper},
-                                  .boundaries = box.boundary,
-                                  .first_body = b == 0 ? nullptr : &setup.bodies.front(),
-                                  .in_impact = plan && (plan->target == b || plan->impactor == b),
-                                  .seed = setup.seed};
+        const BodyContext context{
+            .comm = comm,
+            .scene = scene,
+            .dimension = box.dimension,
+            .domain = {box.lower, box.upper},
+            .boundaries = box.boundary,
+            .first_body = b == 0 ? nullptr : &setup.bodies.front(),
+            .in_impact = plan && (plan->target == b || plan->impactor == b),
+            .gravitational_constant = setup.simulation.gravity ? setup.simulation.gravity->constant : 0,
+            .seed = setup.seed};
         setup.bodies.push_back(read_body(tables[b], setup.simulation.materials.back(), context));
         setup.simulation.held.push_back(tables[b].flag("held", false));
     }

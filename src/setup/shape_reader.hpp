@@ -19,6 +19,7 @@ struct BodyContext {
     std::array<Boundary, 3> boundaries;  ///< of the box
     const Body* first_body;  ///< of the scene, whose resolution others follow; null for the first itself
     bool in_impact;          ///< place and velocity come from [impact]
+    double gravitational_constant;  ///< of [gravity] [m3 kg-1 s-2]; 0: there is none
     std::uint64_t seed;
 };
 
