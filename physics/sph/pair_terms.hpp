@@ -105,8 +105,8 @@ struct RiemannSolution {
 /// third order of their strength. Two-shock form of P. Colella, SIAM J. Sci. Stat. Comput. 3 (1982) 76.
 /// Impedances W come first from the acoustic solution, to second order in the waves' strength W = rho (c +
 /// s/2 |u* - u|) (J. K. Dukowicz, J. Comput. Phys. 61 (1985) 119), then from W^2 at that pressure (B. van
-/// Leer, J. Comput. Phys. 32 (1979) 101). How close that comes: tests/unit/riemann.cpp. The mirrored problem has
-/// the mirrored solution to the last bit.
+/// Leer, J. Comput. Phys. 32 (1979) 101). How close that comes: tests/unit/riemann.cpp. The mirrored problem
+/// has the mirrored solution to the last bit.
 template <class Real>
 RiemannSolution<Real> solve_riemann(const RiemannSide<Real>& left, const RiemannSide<Real>& right,
                                     double shock_slope) {
