@@ -1,6 +1,7 @@
 #pragma once
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct LatticeCase {
     bool riemann = false;      ///< false: no dissipation
     double shear_modulus = 0;  ///< mu/(rho c^2)
     double courant = 0.1;
+    double least_pressure = -std::numeric_limits<double>::infinity();  ///< of the material
 };
 
 /// The lattice as the dispersion relations need it: its density, and its kernel.
@@ -164,7 +166,8 @@ class LatticeSimulation {
              .eos = LinearEquationOfState{.reference_density = density * (1 - lattice_.pressure),
                                           .sound_speed = 1},
              .shear_modulus = lattice_.shear_modulus * density,
-             .reference_density = density}};
+             .reference_density = density,
+             .least_pressure = lattice_.least_pressure}};
         ParticleSet particles("lattice", dimension);
         add_fields(particles, setup);
         for (std::uint64_t id = 0; id < sites_.size(); ++id) {

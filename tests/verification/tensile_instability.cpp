@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "domain/random.hpp"
@@ -233,6 +235,22 @@ TEST_P(TensileInstability, TheAutomaticChoiceIsStableForBothSignsOfPressure) {
             fmt::print("| {} | {:+.1f} | {} | {} | {:.0f} | {:.2f} |\n", dimension, lattice.pressure, what,
                        name_of(lattice.pressure > 0 ? lattice.compressed : lattice.stretched),
                        crossings * lattice.size[0], closest[c]);
+    }
+}
+
+/// A stretched fluid with least_pressure = 0 has opened: no pressure, and nothing pushes a displaced
+/// particle.
+TEST(LeastPressure, TakesTensionAway) {
+    const Communicator alone(MPI_COMM_SELF);
+    LatticeCase lattice{.dimension = 2, .size = box_size(2), .pressure = -0.3};
+    for (const double least : {-std::numeric_limits<double>::infinity(), -0.1, 0.0}) {
+        lattice.least_pressure = least;
+        LatticeSimulation box(alone, lattice, sine_along_x(1e-3, wavenumber(2)), nothing);
+        const double expected = std::max(-0.3, least);
+        for (const double pressure : std::as_const(box.run()).particles().own(field::pressure))
+            EXPECT_NEAR(pressure, expected, least < -1 ? 0.01 : 0);  // 0.01: waves of 1e-3 k c^2
+        const double push = std::abs(box.acceleration(wavenumber(2)));
+        EXPECT_TRUE(least == 0 ? push == 0 : push > 1e-6) << push;
     }
 }
 
