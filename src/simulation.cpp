@@ -271,6 +271,13 @@ void Simulation::choose_time_step() {
     }
     phases_.enter(Phase::wait);
     time_step_ = comm_.all_min(limit_.time_step);
+    if (time_ + time_step_ > time_) return;
+    std::string message;  // the time would stand still for ever
+    if (limit_.time_step == time_step_)
+        message =
+            fmt::format("step {}, time {} s: the time step has fallen to {} s, limited by {} at particle {}",
+                        step_, time_, time_step_, limit_.reason, limit_.id);
+    comm_.all_agree(1, message);
 }
 
 void Simulation::check_finite() {

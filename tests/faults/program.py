@@ -92,6 +92,10 @@ class BadInput(Case):
         self.assert_fails(talus("check", self.scene(text[:text.index("[quick]")]), "--quick", ranks=0), 2,
                           r"scene\.toml: quick \(missing")
 
+    def test_a_time_step_of_nothing(self):
+        done = talus("run", RUNS / "maclaurin_spheroid", "--quick", "--set", "gravity.constant=1e300", "--out", self.out)
+        self.assert_fails(done, 1, r"time step has fallen to .* limited by \w+ at particle \d+")
+
     def test_missing_files(self):
         self.assert_fails(talus("run", self.folder / "nowhere"), 2, "nowhere")
         done = talus("run", SCENE, "--quick", "--set", "body[0].material=cheese", "--out", self.out)
