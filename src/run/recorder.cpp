@@ -61,6 +61,7 @@ RunState run_state(const Simulation& simulation, const Scene& scene) {
     state.scene_text = scene.text();
     state.resolved_scene = scene.resolved();
     state.version = TALUS_VERSION;
+    if (simulation.in_late_phase()) state.numbers["late_phase"] = simulation.setup().late_phase->stiffness;
     for (const Material& material : simulation.setup().materials) state.materials.push_back(material.name);
     return state;
 }

@@ -37,7 +37,8 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
     Recorder recorder(comm, folder, scene, setup, !restart);
     if (restart) {
         recorder.go_on_from(*restart);
-        simulation.resume(restart->state.time, restart->state.time_step, restart->state.step);
+        simulation.resume(restart->state.time, restart->state.time_step, restart->state.step,
+                          restart->state.numbers.contains("late_phase"));
     } else {
         simulation.start();
     }
