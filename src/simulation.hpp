@@ -32,7 +32,7 @@ struct Setup {
     PartitionMethod partition = PartitionMethod::metis;
     double largest_damage_step = 0.1;  ///< D^(1/3) may grow by this much a step [1]
     double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
-    int rebalance_interval = 10;  ///< steps between looks at the imbalance
+    int rebalance_interval = 10;          ///< steps between looks at the imbalance
     std::optional<LatePhase> late_phase;  ///< none: rock keeps its stiffness to the end
 };
 

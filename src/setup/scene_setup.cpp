@@ -132,7 +132,8 @@ std::optional<LatePhase> read_late_phase(const Section& root, const Setup& simul
         table.error("", "needs sph.density = \"continuity\"");
     for (const Material& material : simulation.materials)
         if (std::holds_alternative<IdealGas>(material.eos))
-            table.error("", fmt::format("'{}' is an ideal gas, which has no stiffness of its own", material.name));
+            table.error(
+                "", fmt::format("'{}' is an ideal gas, which has no stiffness of its own", material.name));
     return LatePhase{.from = table.number("from", "s", {}, not_negative),
                      .stiffness = table.number("stiffness", "1", 0.01, {0, 1, true})};
 }
