@@ -141,6 +141,11 @@ void Recorder::go_on_from(const Restart& restart) {
         files_->log->warn("the scene differs from the one that wrote this checkpoint");
 }
 
+void Recorder::note(const std::vector<Settling>& settlings) {
+    if (!comm_.is_root()) return;
+    for (const Settling& settling : settlings) files_->log->info("{}", describe(settling));
+}
+
 void Recorder::begin(Simulation& simulation, double end_time) {
     first_step_ = simulation.step_count();
     time_before_ = simulation.time();

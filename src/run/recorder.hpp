@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "io/scene.hpp"
 #include "src/run/restart.hpp"
@@ -25,6 +26,8 @@ class Recorder {
 
     /// Notes that the run is not new: it goes on from the state of a checkpoint.
     void go_on_from(const Restart& restart);
+    /// Notes how the bodies came to rest before the start.
+    void note(const std::vector<Settling>& settlings);
     /// Before the first step: describes the run, and for a new one writes its first state.
     void begin(Simulation& simulation, double end_time);
     void after_step(Simulation& simulation);

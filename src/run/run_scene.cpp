@@ -31,8 +31,15 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
     // The folder is touched only once it is known that the run can begin.
     std::optional<Restart> restart;
     if (!options.restart.empty()) restart = read_restart(comm, options.restart, folder, setup);
-    Simulation simulation(comm, setup.simulation,
-                          restart ? std::move(restart->particles) : make_particles(comm, setup));
+    ParticleSet particles = restart ? std::move(restart->particles) : make_particles(comm, setup);
+    std::vector<Settling> settlings;
+    if (!restart)
+        settlings = settle(comm, setup, particles, [&] {
+            if (const std::string why = stop.reason(0, 0); !why.empty())
+                throw AgreedError(exit_stopped_early,
+                                  fmt::format("stopped early: {}; the next run settles from the start", why));
+        });
+    Simulation simulation(comm, setup.simulation, std::move(particles));
     check_box(scene, simulation);
     Recorder recorder(comm, folder, scene, setup, !restart);
     if (restart) {
@@ -41,6 +48,7 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
                           restart->state.numbers.contains("late_phase"));
     } else {
         simulation.start();
+        recorder.note(settlings);
     }
     recorder.begin(simulation, end_time);
     try {

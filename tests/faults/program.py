@@ -237,6 +237,26 @@ class Restarts(Case):
             for name, content in self.files().items():
                 self.assertTrue(content == before[name], name + " has changed")
 
+    def test_bodies_that_settled_do_not_settle_again(self):
+        def run(out, steps, *options):
+            done = talus("run", RUNS / "asteroid_collision", "--quick", "--steps", steps, "--out", out, "--set",
+                         "settle.imbalance=0.2", *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            return done.stdout.count("' settled in ")
+        straight = self.folder / "straight"
+        self.assertEqual(run(straight, 6), 2)
+        self.assertEqual(run(self.out, 3), 2)
+        self.assertEqual(run(self.out, 6, "--restart", "latest"), 0)
+        self.assertEqual(self.hash(self.out), self.hash(straight))
+
+    def test_settling_that_is_stopped_keeps_what_was_there(self):
+        options = ["run", RUNS / "asteroid_collision", "--quick", "--steps", "2", "--out", self.out]
+        self.assertEqual(talus(*options).returncode, 0)
+        before = self.hash(self.out)
+        done = talus(*options, "--set", "settle.imbalance=0.2", "--walltime", "0")
+        self.assert_fails(done, 75, "settling body 'first': stopped early: .*wall time")
+        self.assertEqual(self.hash(self.out), before)
+
 
 class DamagedCheckpoints(Case):
     def test_a_flipped_byte_is_refused_and_the_previous_checkpoint_offered(self):
