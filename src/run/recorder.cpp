@@ -220,6 +220,12 @@ void Recorder::finish(Simulation& simulation) {
     print_summary(simulation);
 }
 
+void Recorder::hand_over(const Simulation& simulation, const HandOff& result) {
+    const std::filesystem::path file = folder_ / "grains.h5";
+    write_particle_sets(comm_, file, run_state(simulation, scene_), {&result.grains});
+    if (comm_.is_root()) files_->log->info("{}; {}", describe(result), file.string());
+}
+
 std::string Recorder::after_failure(const Simulation& simulation) {
     const std::filesystem::path folder = folder_ / "failed";
     std::string message = fmt::format("last checkpoint: {}", last_checkpoint_.string());

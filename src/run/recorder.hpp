@@ -36,6 +36,9 @@ class Recorder {
     /// Writes the last state and what the scene wants to know of it; prints the table of time per phase.
     void finish(Simulation& simulation);
 
+    /// Writes the grains that the run ends with, `folder`/grains.h5.
+    void hand_over(const Simulation& simulation, const HandOff& result);
+
     /// After a failure of step(): keeps the state that failed in `folder`/failed for a look with `talus
     /// info`, and says where it is and where to go on from.
     std::string after_failure(const Simulation& simulation);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "src/run/commands.hpp"
@@ -23,7 +24,8 @@ bool finished(const Simulation& simulation, double end_time, const RunOptions& o
 int run_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
     const SceneSetup setup = read_scene(comm, scene);
-    const double end_time = options.until.value_or(setup.output.end_time);
+    double end_time = options.until.value_or(setup.output.end_time);
+    if (setup.hand_off) end_time = std::min(end_time, setup.hand_off->at);
     check_plan(scene, setup, end_time);
     const std::filesystem::path folder = output_folder(scene, options);
     StopRequest stop(comm, folder, options.walltime);
@@ -66,6 +68,9 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
                           fmt::format("{}\n{}", error.what(), recorder.after_failure(simulation)));
     }
     recorder.finish(simulation);
+    if (setup.hand_off && simulation.time() >= setup.hand_off->at)
+        recorder.hand_over(simulation,
+                           hand_off(comm, *setup.hand_off, setup.simulation.box, simulation.particles()));
     return exit_done;
 }
 

@@ -278,6 +278,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.output.diagnostics_interval = output.number("diagnostics", "s", 0.0, not_negative);
     setup.output.checkpoint_interval = output.number("checkpoints", "s", 1800.0, not_negative);
     setup.analysis = read_analysis(root.section("analysis"), setup.bodies, setup.simulation);
+    setup.hand_off = read_hand_off(root, setup.bodies, setup.simulation, setup.output.end_time);
     scene.finish();
     return setup;
 }

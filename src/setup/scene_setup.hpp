@@ -5,6 +5,7 @@
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
 #include "src/analysis/analysis.hpp"
+#include "src/analysis/hand_off.hpp"
 #include "src/setup/impact.hpp"
 #include "src/setup/settle.hpp"
 #include "src/simulation.hpp"
@@ -31,6 +32,7 @@ struct SceneSetup {
     double gravitational_constant = newton_constant;  ///< that of [gravity], if given [m3 kg-1 s-2]
     OutputPlan output;
     AnalysisPlan analysis;
+    std::optional<HandOffPlan> hand_off;  ///< none: the run is SPH to its end
     std::uint64_t seed = 0;
 };
 

@@ -20,7 +20,7 @@ namespace talus {
 namespace {
 
 constexpr double default_imbalance = 0.1;  // its square is the share of the energy of the ringing
-constexpr double default_longest = 100;  // times that of sound through the body
+constexpr double default_longest = 100;    // times that of sound through the body
 
 /// Time that sound needs to pass through a body where it is longest [s].
 double sound_passage(const Body& body, const Material& material, int dimension) {
@@ -122,8 +122,8 @@ Settling come_to_rest(const SettlePlan& plan, double longest, Settling now, Simu
         damp(run.particles(), std::exp(-time_step / now.damping));
         measure(run, now);
         progress.update(now.steps, now.time, run.time_step(), run.total_particles());
-        quiet_since = is_quiet(plan, now) ? std::min(quiet_since, now.time)
-                                          : std::numeric_limits<double>::infinity();
+        quiet_since =
+            is_quiet(plan, now) ? std::min(quiet_since, now.time) : std::numeric_limits<double>::infinity();
         if (now.time - quiet_since >= now.quiet_for) return now;
         if (now.time >= longest)
             throw AgreedError(
@@ -153,9 +153,9 @@ void append(ParticleSet& set, const ParticleSet& more, std::span<const FieldInfo
 }
 
 constexpr std::array<const FieldInfo*, 12> kept_fields = {
-    &field::id,     &field::position,       &field::velocity,      &field::mass,
+    &field::id,     &field::position,       &field::velocity,        &field::mass,
     &field::body,   &field::density,        &field::internal_energy, &field::smoothing_length,
-    &field::damage, &field::flaw_threshold, &field::flaw_exponent, &field::flaw_count};
+    &field::damage, &field::flaw_threshold, &field::flaw_exponent,   &field::flaw_count};
 
 /// Back about the centre of mass from before, with the motion that the scene gives the body.
 void set_going(const Body& body, const Point& shift, const Point& centre_of_mass, ParticleSet& particles) {
@@ -191,7 +191,8 @@ std::optional<SettlePlan> read_settle(const Section& root, const std::vector<Bod
     const std::vector<std::string> names = table.texts("bodies", 0, all);
     for (const std::string& name : names)
         if (std::find(all.begin(), all.end(), name) == all.end())
-            table.error("bodies", fmt::format("'{}' is no body that moves (allowed: {})", name, fmt::join(all, ", ")));
+            table.error("bodies",
+                        fmt::format("'{}' is no body that moves (allowed: {})", name, fmt::join(all, ", ")));
     for (const Body& body : bodies)
         plan.bodies.push_back(std::find(names.begin(), names.end(), body.name) != names.end());
     return plan;
@@ -199,7 +200,8 @@ std::optional<SettlePlan> read_settle(const Section& root, const std::vector<Bod
 
 std::string describe(const Settling& settling) {
     return fmt::format(
-        "body '{}' settled in {:.4g} s, {} steps, damped in {:.3g} s, and was quiet for {:.3g} s: acceleration "
+        "body '{}' settled in {:.4g} s, {} steps, damped in {:.3g} s, and was quiet for {:.3g} s: "
+        "acceleration "
         "{:.3g} of gravity's, largest speed {:.3g} m/s, kinetic over potential energy {:.2e}; greatest "
         "pressure {:.4g} Pa, size changed by {:+.2e}",
         settling.body, settling.time, settling.steps, settling.damping, settling.quiet_for,
@@ -229,7 +231,8 @@ std::vector<Settling> settle(const Communicator& comm, const SceneSetup& scene, 
         damp(alone, 0);
         Settling start{.body = body.name};
         start.quiet_for = sound_passage(body, scene.simulation.materials[b], particles.dimension());
-        // Critical for the breathing of a body, whose period is about twice the radius over the speed of sound.
+        // Critical for the breathing of a body, whose period is about twice the radius over the speed of
+        // sound.
         start.damping = plan.damping.value_or(start.quiet_for / (4 * std::numbers::pi));
         const double longest = plan.longest.value_or(default_longest * start.quiet_for);
         const Middle before = middle_of(comm, alone);
@@ -237,7 +240,8 @@ std::vector<Settling> settle(const Communicator& comm, const SceneSetup& scene, 
         try {
             result.push_back(come_to_rest(plan, longest, start, run, before_step));
         } catch (const AgreedError& error) {
-            throw AgreedError(error.exit_code, fmt::format("settling body '{}': {}", body.name, error.what()));
+            throw AgreedError(error.exit_code,
+                              fmt::format("settling body '{}': {}", body.name, error.what()));
         }
         const Middle after = middle_of(comm, run.particles());
         result.back().growth = after.size / before.size - 1;

@@ -15,11 +15,11 @@ struct SceneSetup;
 
 /// How bodies come to rest in their own gravity before time 0; the scene's [settle] table (docs/scene.md).
 struct SettlePlan {
-    double imbalance = 0;                  ///< rms acceleration over that of gravity alone, at most [1]
-    std::optional<double> largest_speed;   ///< of any particle, at most [m/s]
-    std::optional<double> damping;         ///< time in which damping alone divides speeds by e [s]
-    std::optional<double> longest;         ///< time that a body may take [s]
-    std::vector<bool> bodies;              ///< which, one a body
+    double imbalance = 0;                 ///< rms acceleration over that of gravity alone, at most [1]
+    std::optional<double> largest_speed;  ///< of any particle, at most [m/s]
+    std::optional<double> damping;        ///< time in which damping alone divides speeds by e [s]
+    std::optional<double> longest;        ///< time that a body may take [s]
+    std::vector<bool> bodies;             ///< which, one a body
 };
 
 /// Reads [settle], if there is one. Faults are recorded in the scene.
@@ -31,12 +31,12 @@ struct Settling {
     std::string body;
     double time = 0;  ///< that it took [s]
     std::uint64_t steps = 0;
-    double damping = 0;        ///< time of it [s]
-    double quiet_for = 0;      ///< time that quiet had to last, that of sound through the body [s]
-    double imbalance = 0;      ///< rms acceleration over that of gravity alone [1]
-    double largest_speed = 0;  ///< [m/s]
-    double kinetic_share = 0;  ///< kinetic energy over that of gravity, without its sign [1]
-    double growth = 0;         ///< relative change of the rms distance from the centre of mass [1]
+    double damping = 0;            ///< time of it [s]
+    double quiet_for = 0;          ///< time that quiet had to last, that of sound through the body [s]
+    double imbalance = 0;          ///< rms acceleration over that of gravity alone [1]
+    double largest_speed = 0;      ///< [m/s]
+    double kinetic_share = 0;      ///< kinetic energy over that of gravity, without its sign [1]
+    double growth = 0;             ///< relative change of the rms distance from the centre of mass [1]
     double greatest_pressure = 0;  ///< [Pa]
 };
 
@@ -47,8 +47,8 @@ std::string describe(const Settling& settling);
 /// Velocities are damped as exp(-t/damping). It is over once forces balance and speeds are small all the time
 /// that sound needs to pass through the body. Then `particles`, those of time 0, have the positions,
 /// densities, energies and smoothing lengths that came out, about the centre of mass from before, and move as
-/// the scene says. The same bits on any number of ranks. `before_step` (collective) is called before each step
-/// and may throw. Throws AgreedError (exit code 1) if a body does not settle. Collective.
+/// the scene says. The same bits on any number of ranks. `before_step` (collective) is called before each
+/// step and may throw. Throws AgreedError (exit code 1) if a body does not settle. Collective.
 std::vector<Settling> settle(const Communicator& comm, const SceneSetup& scene, ParticleSet& particles,
                              const std::function<void()>& before_step);
 

@@ -35,8 +35,8 @@ TEST(Settle, SameBitsOnAnyNumberOfRanks) {
     EXPECT_EQ(hash_on(world), hash_on(Communicator(MPI_COMM_SELF)));
 }
 
-// Those that settle keep their centre of mass, flaws and damage and get their motion back; the others stay as they
-// are.
+// Those that settle keep their centre of mass, flaws and damage and get their motion back; the others stay as
+// they are.
 TEST(Settle, ChangesTheBodiesThatAreNamedAlone) {
     const Communicator comm(MPI_COMM_SELF);
     const SceneSetup scene = rock_ball(comm, 200, std::string(second_ball) + "[settle]\nbodies = [\"moon\"]");

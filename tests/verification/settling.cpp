@@ -90,7 +90,8 @@ TEST(Settling, ABallOfRockStaysQuietInTheEquilibriumOfItsGravity) {
     const Communicator comm = world();
     const Start let_go = begin(comm, 1000, ""), settled = begin(comm, 1000, "[settle]");
     // Let go, it falls by the strain of its own weight and rings: greatest speeds of order g R/c.
-    const double fall = 4.0 / 3 * std::numbers::pi * newton_constant * density * squared(radius) / sound_speed;
+    const double fall =
+        4.0 / 3 * std::numbers::pi * newton_constant * density * squared(radius) / sound_speed;
     const double mass = 4.0 / 3 * std::numbers::pi * density * radius * radius * radius;
     EXPECT_GT(let_go.breathing, 0.01 * 0.5 * mass * squared(fall));
     EXPECT_LT(std::abs(let_go.central_pressure), 1e-3);
