@@ -18,9 +18,7 @@ Point vector_at(const ParticleSet& particles, const Field<double>& field, std::s
     return {particles.data(field, 0)[i], particles.data(field, 1)[i], particles.data(field, 2)[i]};
 }
 
-Point rounded(std::span<const ExactSum> sums) {
-    return {sums[0].value(), sums[1].value(), sums[2].value()};
-}
+Point rounded(std::span<const ExactSum> sums) { return {sums[0].value(), sums[1].value(), sums[2].value()}; }
 
 /// What a grain is made of.
 struct Matter {
@@ -61,8 +59,8 @@ Matter single(const ParticleSet& particles, std::size_t i, const HandOffPlan& pl
             {}};
 }
 
-/// The matter of all fragments, those that this rank makes grains of: every one belongs to one rank. Sums over the
-/// ranks a few fragments at a time, for exact sums are large.
+/// The matter of all fragments, those that this rank makes grains of: every one belongs to one rank. Sums
+/// over the ranks a few fragments at a time, for exact sums are large.
 std::vector<Matter> matter_of(const Communicator& comm, const LinkedParticles& linked,
                               const HandOffPlan& plan) {
     const ParticleSet& set = linked.particles;
@@ -74,10 +72,9 @@ std::vector<Matter> matter_of(const Communicator& comm, const LinkedParticles& l
     });
     std::vector<std::vector<std::uint32_t>> members(linked.fragments.size());
     for (std::uint32_t i = 0; i < set.size(); ++i)
-        members[*std::lower_bound(by_label.begin(), by_label.end(), label[i],
-                                  [&](std::size_t k, std::uint64_t l) {
-                                      return linked.fragments[k].label < l;
-                                  })]
+        members[*std::lower_bound(
+                    by_label.begin(), by_label.end(), label[i],
+                    [&](std::size_t k, std::uint64_t l) { return linked.fragments[k].label < l; })]
             .push_back(i);
 
     constexpr std::size_t at_once = 1024, sum_count = 4;  // angular momentum, volume
@@ -89,8 +86,9 @@ std::vector<Matter> matter_of(const Communicator& comm, const LinkedParticles& l
         for (std::size_t k = begin; k < end; ++k)
             for (const std::uint32_t i : members[k]) {
                 const double mass = set.data(field::mass)[i];
-                const Point turning = cross(minus(vector_at(set, field::position, i), linked.fragments[k].centre),
-                                            minus(vector_at(set, field::velocity, i), linked.fragments[k].velocity));
+                const Point turning =
+                    cross(minus(vector_at(set, field::position, i), linked.fragments[k].centre),
+                          minus(vector_at(set, field::velocity, i), linked.fragments[k].velocity));
                 ExactSum* of_fragment = &sums[(k - begin) * sum_count];
                 for (std::size_t a = 0; a < 3; ++a) of_fragment[a].add(mass * turning[a]);
                 of_fragment[3].add(mass / plan.density[set.data(field::body)[i]]);
@@ -137,19 +135,16 @@ Ledger ledger_of(const Communicator& comm, const ParticleSet& particles) {
         sums[kinetic].add(0.5 * dot(spin, rate));
     }
     ExactSum::all_reduce(comm, sums);
-    return {sums[mass_sum].value(),
-            rounded({&sums[momentum], 3}),
-            rounded({&sums[turning], 3}),
-            sums[size].value(),
-            sums[turning_size].value(),
-            sums[kinetic].value()};
+    return {sums[mass_sum].value(), rounded({&sums[momentum], 3}), rounded({&sums[turning], 3}),
+            sums[size].value(),     sums[turning_size].value(),    sums[kinetic].value()};
 }
 
 HandOff hand_off(const Communicator& comm, const HandOffPlan& plan, const Box& box,
                  const ParticleSet& particles) {
     std::vector<Matter> matter;
     for (std::size_t i = 0; i < particles.size(); ++i)
-        if (!plan.groups || !may_link(particles, *plan.groups, i)) matter.push_back(single(particles, i, plan));
+        if (!plan.groups || !may_link(particles, *plan.groups, i))
+            matter.push_back(single(particles, i, plan));
     if (plan.groups) {
         const LinkedParticles linked = link_particles(comm, box, particles, *plan.groups);
         const std::vector<Matter> pieces = matter_of(comm, linked, plan);
@@ -183,7 +178,8 @@ std::string describe(const HandOff& result) {
     const Ledger &before = result.before, &after = result.after;
     std::string text = fmt::format(
         "handed over: {} particles became {} grains, {} of several particles and {} of one; mass changed by "
-        "{:.1e} of itself, momentum by {:.1e} and angular momentum by {:.1e} of the sum of their sizes; kinetic "
+        "{:.1e} of itself, momentum by {:.1e} and angular momentum by {:.1e} of the sum of their sizes; "
+        "kinetic "
         "energy {:.4g} J of {:.4g} J; {:.4g} J of internal energy are left behind",
         result.particles, result.fragments + result.singles, result.fragments, result.singles,
         std::abs(after.mass / before.mass - 1), change(before.momentum, after.momentum, before.momentum_size),
@@ -191,9 +187,10 @@ std::string describe(const HandOff& result) {
         before.kinetic_energy, result.internal_energy);
     const Overlaps& overlaps = result.overlaps;
     if (overlaps.pairs == 0) return text + "; no grains overlap";
-    return text + fmt::format("; {} pairs of grains overlap, the deepest by {:.4g} m, at most {:.3g} of the "
-                              "smaller radius",
-                              overlaps.pairs, overlaps.deepest, overlaps.share);
+    return text + fmt::format(
+                      "; {} pairs of grains overlap, the deepest by {:.4g} m, at most {:.3g} of the "
+                      "smaller radius",
+                      overlaps.pairs, overlaps.deepest, overlaps.share);
 }
 
 }  // namespace talus

@@ -49,9 +49,9 @@ void look_at_small(const Communicator& comm, ParticleSet small, double largest, 
     decomposition.arrange(small, grid);
     decomposition.halo().begin(small, {&field::position, &field::radius});
     decomposition.halo().finish();
-    Partners<3> partners({small.data(field::position, 0), small.data(field::position, 1),
-                          small.data(field::position, 2)},
-                         small.data(field::radius), 2);
+    Partners<3> partners(
+        {small.data(field::position, 0), small.data(field::position, 1), small.data(field::position, 2)},
+        small.data(field::radius), 2);
     decomposition.table().for_each_own(
         Cells::all, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
             partners.enter(cell, runs);

@@ -18,15 +18,16 @@ namespace {
 
 constexpr double density = 2000;
 
-/// Clumps of a lattice with a spin and a speed of their own, in dust, far from the origin.
+/// Clumps of a lattice with a spin and a speed of their own, half of one body and half of another, in dust,
+/// far from the origin.
 std::vector<Grain> broken_body() {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> uniform(-1, 1);
     std::vector<Grain> rubble;
-    const auto add = [&](const Point& x, const Point& v, double damage) {
+    const auto add = [&](const Point& x, const Point& v, double damage, bool second) {
         const std::uint64_t id = (rubble.size() * 7919) % 1000003;
-        rubble.push_back({id, x, v, density * (1 + 0.2 * uniform(random)), damage,
-                          static_cast<std::uint8_t>(rubble.size() % 2)});
+        rubble.push_back(
+            {id, x, v, density * (1 + 0.2 * uniform(random)), damage, static_cast<std::uint8_t>(second)});
     };
     for (int clump = 0; clump < 12; ++clump) {
         const Point middle{1e4 + 60 * uniform(random), 60 * uniform(random), 30.0 * clump},
@@ -36,12 +37,12 @@ std::vector<Grain> broken_body() {
             for (int y = -1; y <= 1; ++y)
                 for (int z = -1; z <= 1; ++z) {
                     const Point arm{double(x), double(y), double(z)};
-                    add(plus(middle, arm), plus(speed, cross(spin, arm)), 0.3);
+                    add(plus(middle, arm), plus(speed, cross(spin, arm)), 0.3, x > 0);
                 }
     }
     for (int k = 0; k < 200; ++k)
         add({1e4 + 80 * uniform(random), 80 * uniform(random), 200 + 180 * uniform(random)},
-            {300 * uniform(random), 300 * uniform(random), 20}, 1);
+            {300 * uniform(random), 300 * uniform(random), 20}, 1, k % 2 == 0);
     return rubble;
 }
 
@@ -102,7 +103,8 @@ TEST(HandOff, KeepsMassMomentumAndAngularMomentum) {
                 rate{spin[0][k], spin[1][k], spin[2][k]};
             new_mass += grain_mass[k];
             new_momentum = plus(new_momentum, times(grain_mass[k], speed));
-            new_turning = plus(new_turning, plus(times(grain_mass[k], cross(at, speed)), times(inertia[k], rate)));
+            new_turning =
+                plus(new_turning, plus(times(grain_mass[k], cross(at, speed)), times(inertia[k], rate)));
             volume += 4 * std::numbers::pi / 3 * radius[k] * radius[k] * radius[k];
             EXPECT_NEAR(inertia[k], 0.4 * grain_mass[k] * radius[k] * radius[k], 1e-14 * inertia[k]);
         }
@@ -155,7 +157,8 @@ TEST(HandOff, GivesASphereTheAngularMomentumOfARod) {
         const Point arm{double(k), 0, 0};
         rod.push_back({static_cast<std::uint64_t>(k + 10), arm, cross(spin, arm), density, 0, 0});
     }
-    const HandOff found = hand_off(comm, plan_of(FragmentRules{1, {1.2, 1.2}}), open_box(), share(comm, rod, 2));
+    const HandOff found =
+        hand_off(comm, plan_of(FragmentRules{1, {1.2, 1.2}}), open_box(), share(comm, rod, 2));
     const auto rate = comm.all_gather(std::as_const(found.grains).own(field::angular_velocity, 2));
     ASSERT_EQ(rate.size(), 1u);
     const double radius = std::cbrt(3 * 21 / (4 * std::numbers::pi)), arms2 = 2 * 385;  // 1^2 + ... + 10^2
@@ -178,7 +181,8 @@ TEST(HandOff, FindsEveryOverlap) {
         const std::size_t i = mine.size();
         mine.resize(i + 1);
         mine.data(field::id)[i] = k;
-        for (int a = 0; a < 3; ++a) mine.data(field::position, a)[i] = spheres[k][static_cast<std::size_t>(a)];
+        for (int a = 0; a < 3; ++a)
+            mine.data(field::position, a)[i] = spheres[k][static_cast<std::size_t>(a)];
         mine.data(field::radius)[i] = spheres[k][3];
     }
     Overlaps expected;
