@@ -2,9 +2,9 @@
 import os
 import subprocess
 
-TITLE = "Self-gravity of 30 000 particles in a sphere against the direct sum"
+TITLE = "Self-gravity of 20 000 particles in a sphere against the direct sum"
 PROGRAMS = ["gravity_bench"]
-PARTICLES = 30000
+PARTICLES = 20000
 COLUMNS = ("order", "bits", "opening", "parameter", "rms", "greatest", "drift", "points", "softened", "nodes",
            "ns_per_interaction", "ns_per_particle")
 COLOURS = {1: "#c0392b", 2: "#d98e04", 3: "#1f6fb2"}
