@@ -47,20 +47,26 @@ def draw_lines(axes, rows, across, up):
 
 
 def draw(rows, plt):
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
     figure, (error, cost, worth) = plt.subplots(1, 3, figsize=(13, 4.3), layout="constrained")
     draw_lines(error, rows, interactions, lambda row: row["rms"])
     draw_lines(cost, rows, interactions, lambda row: row["ns_per_interaction"])
     draw_lines(worth, rows, lambda row: row["ns_per_particle"] / 1000, lambda row: row["rms"])
+    for axes in (error, cost, worth):
+        axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
     for order in COLOURS:
         for row in chosen(rows, order=order, bits=32, opening="geometric"):
             if row["parameter"] in (0.4, 0.9) or row["parameter"] == DEFAULT["parameter"]:
                 error.annotate(f"$\\theta$ = {row['parameter']:g}", (interactions(row), row["rms"]), fontsize=7,
                                xytext=(6, 3), textcoords="offset points", color=COLOURS[order])
-    error.set(xscale="log", yscale="log", xlabel="interactions per particle", ylabel="rms error / mean acceleration",
+    error.set(yscale="log", xlabel="interactions per particle", ylabel="rms error / mean acceleration",
               title="Error against interactions")
-    cost.set(xscale="log", ylim=(0, None), xlabel="interactions per particle", ylabel="ns per interaction",
+    cost.set(ylim=(0, None), xlabel="interactions per particle", ylabel="ns per interaction",
              title="Cost of one interaction")
-    worth.set(xscale="log", yscale="log", xlabel="µs per particle, one core", ylabel="rms error / mean acceleration",
+    worth.set(yscale="log", xlabel="µs per particle, one core", ylabel="rms error / mean acceleration",
               title="Error against time")
     error.legend(fontsize=7, title="filled: single precision, hollow: double\nring: the default", title_fontsize=7)
     return figure
