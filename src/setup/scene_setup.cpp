@@ -264,7 +264,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
         read_sph(root.section("sph"), dimension, setup.simulation.materials, widest_open_spacing(setup));
     read_contacts(root, setup);
     setup.simulation.late_phase = read_late_phase(root, setup.simulation);
-    if (!scene.faulty()) setup.settle = read_settle(root, setup.bodies, setup.simulation);
+    setup.settle = read_settle(root, setup.bodies, setup.simulation);
     const Section run = root.section("run");
     setup.output.end_time = run.number("end_time", "s", {}, positive);
     setup.simulation.first_time_step = run.has("first_time_step")
