@@ -41,8 +41,8 @@ class CellTable {
             const CellEntry& cell = cells_[own_[k].place];
             if (which == Cells::interior && cell.touches_copies) continue;
             if (which == Cells::boundary && !cell.touches_copies) continue;
-            visit(cell, std::span<const Run>(runs_.data() + own_[k].first_run, runs_.data() + own_[k].end_run),
-                  k);
+            visit(cell,
+                  std::span<const Run>(runs_.data() + own_[k].first_run, runs_.data() + own_[k].end_run), k);
         }
     }
 

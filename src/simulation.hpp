@@ -29,7 +29,7 @@ struct Setup {
     std::optional<gravity::Settings> gravity;  ///< none: no self-gravity
     std::vector<Material> materials;           ///< one a body, in order
     std::vector<bool> held;                    ///< one a body: its particles never move; empty: none
-    PartitionMethod partition = PartitionMethod::metis;
+    PartitionMethod partition = PartitionMethod::cheapest;
     double largest_damage_step = 0.1;  ///< D^(1/3) may grow by this much a step [1]
     double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
     int rebalance_interval = 10;          ///< steps between looks at the imbalance

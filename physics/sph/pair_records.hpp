@@ -73,8 +73,8 @@ class PairRecords {
     void copy(std::size_t place, const std::array<const double*, components>& from) {
         for (std::size_t c = 0; c < components; ++c) columns_[place + c] = from[c];
     }
-    /// Fills the records of the copies; finish(neighbours, values) sets what is not copied, a particle in each
-    /// lane.
+    /// Fills the records of the copies; finish(neighbours, values) sets what is not copied, a particle in
+    /// each lane.
     template <class Finish>
     void fill_copies(Finish&& finish) {
         Run rest{own_, own_ + static_cast<std::uint32_t>(copies_)};
@@ -101,7 +101,8 @@ class PairRecords {
         for (std::size_t lane = 0; lane < lane_count; ++lane) from[lane] = (*this)[index[lane]].values.data();
         Lanes none;
         [&]<std::size_t... pair>(std::index_sequence<pair...>) {
-            (load_two(from, 2 * pair, lanes[2 * pair], 2 * pair + 1 < count ? lanes[2 * pair + 1] : none), ...);
+            (load_two(from, 2 * pair, lanes[2 * pair], 2 * pair + 1 < count ? lanes[2 * pair + 1] : none),
+             ...);
         }
         (std::make_index_sequence<(count + 1) / 2>{});
         return lanes;
@@ -143,9 +144,9 @@ class PairRecords {
         std::array<PairRecord<count>, lane_count> spare;  // for lanes without a particle
         std::array<double*, lane_count> to;
         for (std::size_t lane = 0; lane < lane_count; ++lane)
-            to[lane] =
-                (lane < some.number ? records_[slot(some.first + static_cast<std::uint32_t>(lane))] : spare[lane])
-                    .values.data();
+            to[lane] = (lane < some.number ? records_[slot(some.first + static_cast<std::uint32_t>(lane))]
+                                           : spare[lane])
+                           .values.data();
         for (std::size_t c = 0; c < count; c += 2) store_two(to, c, values[c], values[c + 1]);
         rest.begin += static_cast<std::uint32_t>(some.number);
     }

@@ -12,8 +12,9 @@ namespace talus {
 namespace {
 
 constexpr RandomStream draws{.seed = 41};
-constexpr PartitionMethod methods[] = {PartitionMethod::metis, PartitionMethod::bisection,
-                                       PartitionMethod::slabs, PartitionMethod::scrambled};
+constexpr PartitionMethod methods[] = {PartitionMethod::cheapest, PartitionMethod::metis,
+                                       PartitionMethod::bisection, PartitionMethod::slabs,
+                                       PartitionMethod::scrambled};
 
 std::vector<Block> sorted(std::vector<Block> blocks) {
     std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.key < b.key; });
@@ -134,7 +135,8 @@ TEST(DealBlocks, IsDeterministic) {
 
 TEST(DealBlocks, MostWorkStaysWhereItWas) {
     std::vector<Block> blocks = cube(20, 0.5);
-    for (const PartitionMethod method : {PartitionMethod::metis, PartitionMethod::bisection})
+    for (const PartitionMethod method :
+         {PartitionMethod::cheapest, PartitionMethod::metis, PartitionMethod::bisection})
         for (const int ranks : {2, 3, 5, 8}) {
             const auto before = deal_blocks(method, blocks, ranks, {});
             // Work moves a little; and the former owners have other names than the parts.
@@ -165,7 +167,8 @@ TEST(DealBlocks, SameWorkMovesNothing) {
 /// The number of ranks that a rank talks to is that of a compact body's neighbours, however many there are.
 TEST(DealBlocks, NeighboursOfAPartDoNotGrowWithTheRanks) {
     const std::vector<Block> blocks = cube(24, 1);
-    for (const PartitionMethod method : {PartitionMethod::metis, PartitionMethod::bisection})
+    for (const PartitionMethod method :
+         {PartitionMethod::cheapest, PartitionMethod::metis, PartitionMethod::bisection})
         for (const int ranks : {8, 27, 64, 216}) {
             const auto owners = deal_blocks(method, blocks, ranks, {});
             std::map<std::uint64_t, int> owner_of;
