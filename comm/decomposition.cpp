@@ -192,8 +192,8 @@ void Decomposition::divide(const ParticleSet& particles, const CellGrid& grid) {
 
 bool Decomposition::rebalance(std::span<const double> work) {
     if (comm_.size() == 1) return false;
-    // A move costs a tenth of a step or two: not worth it for less than 2 % of idle time or a gain below 1 %.
-    constexpr double worth_moving = 1.02, least_gain = 0.01;
+    // A move costs a few steps: not worth it for less than 5 % of idle time or a gain below 3 %.
+    constexpr double worth_moving = 1.05, least_gain = 0.03;
     double local = 0;
     for (const double w : work) local += w;
     double total = 0, most = 0;

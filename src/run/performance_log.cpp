@@ -10,9 +10,9 @@ namespace talus {
 namespace {
 
 std::vector<CsvColumn> performance_columns() {
-    std::vector<CsvColumn> columns = {{"time", "s"},        {"ranks", "1"},
-                                      {"imbalance", "1"},   {"imbalance_of_time", "1"},
-                                      {"cuts", "1"},        {"copies_of_a_rank", "1"},
+    std::vector<CsvColumn> columns = {{"time", "s"},      {"ranks", "1"},
+                                      {"imbalance", "1"}, {"imbalance_of_time", "1"},
+                                      {"cuts", "1"},      {"copies_of_a_rank", "1"},
                                       {"halo_bytes", "1"}};
     for (const std::string_view phase : phase_names) {
         std::string name(phase);
@@ -25,8 +25,8 @@ std::vector<CsvColumn> performance_columns() {
 /// Time spent on particles and pairs alone, without others.
 double computing(std::span<const double> seconds) {
     double sum = 0;
-    for (const Phase phase : {Phase::density, Phase::gradients, Phase::forces, Phase::gravity,
-                              Phase::material, Phase::motion})
+    for (const Phase phase :
+         {Phase::density, Phase::gradients, Phase::forces, Phase::gravity, Phase::material, Phase::motion})
         sum += seconds[static_cast<std::size_t>(phase)];
     return sum;
 }
@@ -70,15 +70,15 @@ void PerformanceLog::write(const Simulation& simulation) {
     const auto greatest = [&](std::size_t k) {
         return std::ranges::max(of_ranks([k](std::span<const double> rank) { return rank[k]; }));
     };
-    std::vector<double> row = {
-        simulation.time(),
-        static_cast<double>(ranks),
-        imbalance_of(of_ranks([](std::span<const double> rank) { return rank[0]; })),
-        imbalance_of(of_ranks(
-            [&](std::span<const double> rank) { return computing(rank.subspan(first_phase)); })),
-        static_cast<double>(simulation.decomposition().rebalance_count()),
-        greatest(2),
-        greatest(1)};
+    std::vector<double> row = {simulation.time(),
+                               static_cast<double>(ranks),
+                               imbalance_of(of_ranks([](std::span<const double> rank) { return rank[0]; })),
+                               imbalance_of(of_ranks([&](std::span<const double> rank) {
+                                   return computing(rank.subspan(first_phase));
+                               })),
+                               static_cast<double>(simulation.decomposition().rebalance_count()),
+                               greatest(2),
+                               greatest(1)};
     for (std::size_t k = first_phase; k < mine.size(); ++k) {
         const std::vector<double> seconds = of_ranks([k](std::span<const double> rank) { return rank[k]; });
         row.push_back(std::accumulate(seconds.begin(), seconds.end(), 0.0) / static_cast<double>(ranks));

@@ -9,8 +9,8 @@
 
 namespace talus {
 
-/// `performance.csv`: how evenly the work is spread and where time goes, a row for each time that has passed since
-/// the last one. Nothing is exchanged but for a row.
+/// `performance.csv`: how evenly the work is spread and where time goes, a row for each time that has passed
+/// since the last one. Nothing is exchanged but for a row.
 class PerformanceLog {
   public:
     /// `restart_step`: see CsvWriter. Collective.
