@@ -10,6 +10,8 @@ struct Softener {
     double stiffness;
 
     EquationOfState operator()(Tillotson eos) const {
+        eos.a *= stiffness;
+        eos.b *= stiffness;
         eos.A *= stiffness;
         eos.B *= stiffness;
         return eos;
@@ -19,6 +21,7 @@ struct Softener {
         return eos;
     }
     EquationOfState operator()(StiffenedGas eos) const {
+        eos.gamma = 1 + stiffness * (eos.gamma - 1);
         eos.sound_speed *= std::sqrt(stiffness);
         return eos;
     }

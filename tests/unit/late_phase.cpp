@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -48,6 +49,21 @@ TEST(LatePhase, KeepsThePressure) {
     EXPECT_NEAR(density[0] / 2700 - 1, 0.0099, 0.0002)
         << "P = A mu + B mu^2: a hundred times the compression";
     EXPECT_NEAR(density[5], 2700, 1e-9);
+}
+
+/// Rock warmed by friction is wider than cold rock where it is free of pressure, by as much when it is softer: else it
+/// would swell at the change.
+TEST(LatePhase, ExpandsWarmRockNoMore) {
+    const Material stiff = rock(), soft = softened(stiff, 0.01);
+    const double warm = 2e4;
+    std::vector<double> density = {2680};
+    const double before = pressure(stiff.eos, density[0], warm);
+    ASSERT_LT(before, -1e6) << "a crack that is open";
+    keep_pressure(stiff.eos, soft.eos, std::vector<double>{warm}, density, std::vector<std::uint8_t>{0}, 0);
+    EXPECT_LT(pressure(soft.eos, density[0], warm), 0);
+    for (const double rho : {2600.0, 2680.0, 2750.0})
+        EXPECT_NEAR(pressure(soft.eos, rho, warm), 0.01 * pressure(stiff.eos, rho, warm),
+                    1e-6 * std::abs(before));
 }
 
 TEST(LatePhase, LeavesTornMatterAndOtherBodiesAlone) {
