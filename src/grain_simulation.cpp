@@ -1,0 +1,310 @@
+#include "src/grain_simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "comm/exact_sum.hpp"
+#include "domain/boundary.hpp"
+
+namespace talus {
+
+namespace {
+
+std::size_t history_count(const dem::AnyLawTable& laws) {
+    return std::visit([](const auto& table) { return std::decay_t<decltype(table)>::Law::history_count; }, laws);
+}
+
+/// Force of a contact of a grain of this material pressed in by its own radius, the greatest of all partners [N].
+double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, double radius, double mass) {
+    dem::ContactKinematics<double> flat{};
+    flat.overlap = flat.effective_radius = radius;
+    flat.effective_mass = mass;
+    flat.normal = {1, 0, 0};
+    double greatest = 0;
+    std::visit(
+        [&](const auto& table) {
+            for (std::size_t other = 0; other < table.pairs.materials(); ++other)
+                greatest = std::max(greatest, table.pairs(material, other).elasticity(flat, 0).normal_force);
+        },
+        laws);
+    return greatest;
+}
+
+}  // namespace
+
+GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, ParticleSet grains)
+    : comm_(comm),
+      places_(setup.box),
+      setup_(std::move(setup)),
+      grains_(std::move(grains)),
+      decomposition_(comm, setup_.partition),
+      pairs_(history_count(setup_.laws)),
+      at_walls_(history_count(setup_.laws)) {
+    setup_.box = places_.aligned(setup_.box);
+    for (int axis = 0; axis < 3; ++axis)
+        for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
+    for (const double r : std::as_const(grains_).own(field::radius)) largest_radius_ = std::max(largest_radius_, r);
+    largest_radius_ = comm_.all_max(largest_radius_);
+    reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
+    decomposition_.expect(grains_);
+    grid_ = std::make_unique<CellGrid>(setup_.box, 2 * largest_radius_ + listed_gap(), 1);
+    decomposition_.divide(grains_, *grid_);
+}
+
+void GrainSimulation::add_fields(ParticleSet& grains) {
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::angular_velocity, &field::acceleration, &field::angular_acceleration,
+             &field::radius, &field::mass, &field::body, &field::predicted_velocity,
+             &field::predicted_angular_velocity, &field::copied_id})
+        grains.add(*info);
+}
+
+std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
+    std::vector<const FieldInfo*> fields{&field::sliding};
+    if (history_count(setup.laws) > 3) fields.push_back(&field::rolling);
+    return fields;
+}
+
+void GrainSimulation::start() {
+    arrange({});
+    dem::predict(grains_, 0);
+    evaluate(0);
+    finish(0);
+}
+
+void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts) {
+    time_ = time;
+    step_ = last_balance_ = step;
+    arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_));
+    outdated_ = true;  // how far grains have moved is not known
+}
+
+void GrainSimulation::step() {
+    phases_.enter(Phase::motion);
+    dem::drift(grains_, setup_.time_step, places_);
+    if (outdated_) arrange(records_of_contacts());
+    dem::predict(grains_, setup_.time_step);
+    ++step_;
+    evaluate(setup_.time_step);
+    time_ += setup_.time_step;
+    finish(setup_.time_step);
+    phases_.stop();
+}
+
+/// Forces and torques of all contacts, those of own grains while copies are on their way.
+void GrainSimulation::evaluate(double time_step) {
+    phases_.enter(Phase::halo);
+    Halo& halo = decomposition_.halo();
+    halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
+    phases_.enter(Phase::forces);
+    const std::size_t own = grains_.size();
+    rows_.update(grains_, 0, own);
+    sums_.assign(own, {});
+    const dem::Evaluation evaluation{rows_, time_step, static_cast<std::uint32_t>(step_) + 1, sums_, largest_radius_};
+    refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
+    refuse_overload(dem::evaluate_walls(evaluation, setup_.laws, setup_.walls, at_walls_), true);
+    phases_.enter(Phase::halo);
+    halo.finish();
+    phases_.enter(Phase::forces);
+    rows_.update(grains_, own, grains_.size_with_halo());
+    refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
+    evaluated_ += pairs_.touching_count + at_walls_.touching_count;
+}
+
+void GrainSimulation::finish(double kick_step) {
+    phases_.enter(Phase::motion);
+    const double moved2 =
+        dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step);
+    // Grains may come nearer by half the skin each before a pair is missing in the list.
+    const double allowed = 0.499 * setup_.skin;
+    std::array<int, 2> flags{moved2 > allowed * allowed, !fault_.empty()};
+    phases_.enter(Phase::wait);
+    comm_.all_max(std::span<int>(flags));
+    outdated_ = flags[0] > 0;
+    if (flags[1] > 0) comm_.all_agree(1, fault_);
+}
+
+void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
+    if (!overload.found || !fault_.empty()) return;
+    const std::uint64_t* id = grains_.data(field::copied_id);
+    fault_ = fmt::format(
+        "step {}, time {} s: the force between grain {} and {} is not finite, or beyond that of a grain pressed flat; "
+        "a smaller time step, or grains that do not overlap at the start?",
+        step_, time_, id[overload.first],
+        at_wall ? fmt::format("wall '{}'", setup_.walls[overload.second].name) : fmt::format("grain {}", id[overload.second]));
+}
+
+/// Brings grains back into the box and to their owners, contacts with them, and lists the pairs anew.
+void GrainSimulation::arrange(std::vector<dem::ContactRecord> records) {
+    phases_.enter(Phase::decompose);
+    check_walls();
+    apply_boundaries(grains_, setup_.box);
+    const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
+    if (interval > 0 && step_ >= last_balance_ + interval && pairs_.size() > 0) {
+        last_balance_ = step_;
+        std::vector<double> work;
+        for (const CellEntry& cell : decomposition_.own_cells()) work.push_back(cell.end - cell.begin);
+        decomposition_.rebalance(work);
+    }
+    dem::follow_grains(comm_, decomposition_, *grid_, grains_, records);
+    decomposition_.arrange(grains_, *grid_);
+    const auto ids = std::as_const(grains_).own(field::id);
+    std::copy(ids.begin(), ids.end(), grains_.data(field::copied_id));
+    Halo& halo = decomposition_.halo();
+    halo.begin(grains_, {&field::position, &field::radius, &field::mass, &field::body, &field::copied_id});
+    halo.finish();
+    describe_grains();
+    list_contacts(records);
+    ++lists_;
+}
+
+/// What follows from the order of grains: units of force, responses, places from which displacement counts.
+void GrainSimulation::describe_grains() {
+    const double *radius = grains_.data(field::radius), *mass = grains_.data(field::mass);
+    const std::uint8_t* body = grains_.data(field::body);
+    const std::size_t own = grains_.size(), all = grains_.size_with_halo();
+    std::vector<double> units(all);
+    for (std::size_t i = 0; i < all; ++i)
+        units[i] = dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
+    rows_.reset(grains_, units);
+    responses_.acceleration.resize(own);
+    responses_.angular.resize(own);
+    for (std::size_t i = 0; i < own; ++i) {
+        const double mobile = setup_.held[body[i]] ? 0.0 : 1.0;
+        responses_.acceleration[i] = mobile * units[i] / mass[i];
+        responses_.angular[i] = mobile * units[i] * radius[i] / (0.4 * mass[i] * radius[i] * radius[i]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto x = std::as_const(grains_).own(field::position, axis);
+        responses_.start[static_cast<std::size_t>(axis)].assign(x.begin(), x.end());
+    }
+}
+
+void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records) {
+    const std::size_t materials = std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
+    const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
+    dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
+    at_walls_.clear();
+    const double* radius = grains_.data(field::radius);
+    const std::uint8_t* body = grains_.data(field::body);
+    const std::array<const double*, 3> x{grains_.data(field::position, 0), grains_.data(field::position, 1),
+                                         grains_.data(field::position, 2)};
+    for (std::uint32_t i = 0; i < grains_.size(); ++i) {
+        if (setup_.held[body[i]]) continue;
+        for (std::uint32_t w = 0; w < setup_.walls.size(); ++w)
+            if (setup_.walls[w].distance({x[0][i], x[1][i], x[2][i]}) < radius[i] + listed_gap())
+                at_walls_.add(i, w, setup_.material[body[i]] * materials + setup_.walls[w].material);
+    }
+    at_walls_.finish();
+    const std::uint64_t* id = grains_.data(field::copied_id);
+    const auto id_of = [id](std::uint32_t i) { return id[i]; };
+    const dem::ContactRecordMap map(records);
+    const auto now = static_cast<std::uint32_t>(step_) + 1;
+    dem::restore_records(map, now, id_of, id_of, pairs_);
+    dem::restore_records(map, now, id_of, dem::wall_key, at_walls_);
+}
+
+std::vector<dem::ContactRecord> GrainSimulation::records_of_contacts() const {
+    return records_below(grains_.size_with_halo());
+}
+
+/// The contacts of the last evaluation whose first grain is stored below `end`.
+std::vector<dem::ContactRecord> GrainSimulation::records_below(std::size_t end) const {
+    const std::uint64_t* id = grains_.data(field::copied_id);
+    const auto id_of = [id](std::uint32_t i) { return id[i]; };
+    std::vector<dem::ContactRecord> records;
+    dem::append_records(pairs_, end, id_of, id_of, records);
+    dem::append_records(at_walls_, end, id_of, dem::wall_key, records);
+    return records;
+}
+
+ParticleSet GrainSimulation::save() {
+    arrange(records_of_contacts());
+    outdated_ = true;
+    phases_.stop();
+    return dem::saved_contacts(records_below(grains_.size()), grains_.dimension(), history_fields(setup_));
+}
+
+/// Throws AgreedError naming a grain whose centre is behind a wall.
+void GrainSimulation::check_walls() const {
+    const std::array<const double*, 3> x{grains_.data(field::position, 0), grains_.data(field::position, 1),
+                                         grains_.data(field::position, 2)};
+    std::string message;
+    for (const dem::PlaneWall& wall : setup_.walls)
+        for (std::size_t i = 0; i < grains_.size() && message.empty(); ++i)
+            if (!(wall.distance({x[0][i], x[1][i], x[2][i]}) > 0) &&
+                !setup_.held[grains_.data(field::body)[i]])
+                message = fmt::format("step {}, time {} s: grain {} at ({:.6g}, {:.6g}, {:.6g}) m is behind wall '{}'",
+                                      step_, time_, grains_.data(field::id)[i], x[0][i], x[1][i], x[2][i], wall.name);
+    comm_.all_agree(1, message);
+}
+
+void GrainSimulation::reset_counters() {
+    evaluated_ = lists_ = 0;
+    phases_ = {};
+}
+
+GrainTotals GrainSimulation::totals() const {
+    enum Sum { mass, kinetic, rotational, potential, px, py, pz, sum_count };
+    std::vector<ExactSum> sums(sum_count);
+    double greatest_speed2 = 0;
+    const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
+    const std::uint8_t* body = grains_.data(field::body);
+    const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
+    std::array<std::uint64_t, 3> counts{};  // contacts, at walls, grains that are not held
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+        double speed2 = 0, spin2 = 0, potential_per_mass = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double v = grains_.data(field::velocity, axis)[i], w = grains_.data(field::angular_velocity, axis)[i];
+            speed2 += v * v;
+            spin2 += w * w;
+            potential_per_mass -= g[static_cast<std::size_t>(axis)] * grains_.data(field::position, axis)[i];
+            sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
+        }
+        sums[mass].add(m[i]);
+        sums[kinetic].add(0.5 * m[i] * speed2);
+        sums[rotational].add(0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
+        sums[potential].add(m[i] * potential_per_mass);
+        greatest_speed2 = std::max(greatest_speed2, speed2);
+        counts[2] += setup_.held[body[i]] ? 0 : 1;
+    }
+    std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
+    for (std::size_t k = 0; k < pairs_.touching_count; ++k) {
+        const std::uint32_t i = pairs_.first[pairs_.touching[k]], j = pairs_.second[pairs_.touching[k]];
+        counts[0] += i < grains_.size() ? 1 : 0;
+        double distance2 = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double* x = grains_.data(field::position, axis);
+            distance2 += (x[i] - x[j]) * (x[i] - x[j]);
+        }
+        greatest[1] = std::max(greatest[1], (r[i] + r[j] - std::sqrt(distance2)) / std::min(r[i], r[j]));
+    }
+    for (std::size_t k = 0; k < at_walls_.touching_count; ++k) {
+        const std::uint32_t i = at_walls_.first[at_walls_.touching[k]];
+        const dem::Vector3<> x{grains_.data(field::position, 0)[i], grains_.data(field::position, 1)[i],
+                               grains_.data(field::position, 2)[i]};
+        const double overlap = r[i] - setup_.walls[at_walls_.second[at_walls_.touching[k]]].distance(x);
+        greatest[1] = std::max(greatest[1], overlap / r[i]);
+    }
+    counts[1] = at_walls_.touching_count;
+    ExactSum::all_reduce(comm_, sums);
+    comm_.all_max(std::span<double>(greatest));
+    comm_.all_sum(std::span<std::uint64_t>(counts));
+    const auto mobile = static_cast<double>(std::max<std::uint64_t>(counts[2], 1));
+    return {.mass = sums[mass].value(),
+            .kinetic_energy = sums[kinetic].value(),
+            .rotational_energy = sums[rotational].value(),
+            .potential_energy = sums[potential].value(),
+            .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
+            .greatest_speed = greatest[0],
+            .greatest_overlap = greatest[1],
+            .grains = total_grains(),
+            .contacts = counts[0],
+            .wall_contacts = counts[1],
+            .coordination = 2 * static_cast<double>(counts[0]) / mobile};
+}
+
+}  // namespace talus
