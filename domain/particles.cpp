@@ -13,14 +13,6 @@ ParticleSet::ParticleSet(std::string name, int dimension) : name_(std::move(name
     add(field::position);
 }
 
-ParticleSet ParticleSet::records(std::string name, int dimension) {
-    ParticleSet set;
-    set.name_ = std::move(name);
-    set.dimension_ = dimension;
-    set.add(field::id);
-    return set;
-}
-
 const Column* ParticleSet::find(const FieldInfo& info) const {
     for (const Column& column : columns_)
         if (column.info == &info) return &column;

@@ -22,8 +22,6 @@ struct Column {
 class ParticleSet {
   public:
     ParticleSet(std::string name, int dimension);
-    /// A set of records without a place in space, such as contacts: ids alone.
-    static ParticleSet records(std::string name, int dimension);
 
     const std::string& name() const { return name_; }
     int dimension() const { return dimension_; }
@@ -72,11 +70,10 @@ class ParticleSet {
     std::size_t bytes_per_particle() const;
 
   private:
-    ParticleSet() = default;
     const Column* find(const FieldInfo& info) const;
 
     std::string name_;
-    int dimension_ = 3;
+    int dimension_;
     std::size_t size_ = 0;
     std::size_t halo_size_ = 0;
     std::vector<Column> columns_;

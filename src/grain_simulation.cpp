@@ -8,16 +8,19 @@
 
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
+#include "domain/grain_fields.hpp"
 
 namespace talus {
 
 namespace {
 
 std::size_t history_count(const dem::AnyLawTable& laws) {
-    return std::visit([](const auto& table) { return std::decay_t<decltype(table)>::Law::history_count; }, laws);
+    return std::visit([](const auto& table) { return std::decay_t<decltype(table)>::Law::history_count; },
+                      laws);
 }
 
-/// Force of a contact of a grain of this material pressed in by its own radius, the greatest of all partners [N].
+/// Force of a contact of a grain of this material pressed in by its own radius, the greatest of all partners
+/// [N].
 double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, double radius, double mass) {
     dem::ContactKinematics<double> flat{};
     flat.overlap = flat.effective_radius = radius;
@@ -46,7 +49,8 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
-    for (const double r : std::as_const(grains_).own(field::radius)) largest_radius_ = std::max(largest_radius_, r);
+    for (const double r : std::as_const(grains_).own(field::radius))
+        largest_radius_ = std::max(largest_radius_, r);
     largest_radius_ = comm_.all_max(largest_radius_);
     reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
     decomposition_.expect(grains_);
@@ -103,7 +107,8 @@ void GrainSimulation::evaluate(double time_step) {
     const std::size_t own = grains_.size();
     rows_.update(grains_, 0, own);
     sums_.assign(own, {});
-    const dem::Evaluation evaluation{rows_, time_step, static_cast<std::uint32_t>(step_) + 1, sums_, largest_radius_};
+    const dem::Evaluation evaluation{rows_, time_step, static_cast<std::uint32_t>(step_) + 1, sums_,
+                                     largest_radius_};
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
     refuse_overload(dem::evaluate_walls(evaluation, setup_.laws, setup_.walls, at_walls_), true);
     phases_.enter(Phase::halo);
@@ -131,10 +136,12 @@ void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wal
     if (!overload.found || !fault_.empty()) return;
     const std::uint64_t* id = grains_.data(field::copied_id);
     fault_ = fmt::format(
-        "step {}, time {} s: the force between grain {} and {} is not finite, or beyond that of a grain pressed flat; "
+        "step {}, time {} s: the force between grain {} and {} is not finite, or beyond that of a grain "
+        "pressed flat; "
         "a smaller time step, or grains that do not overlap at the start?",
         step_, time_, id[overload.first],
-        at_wall ? fmt::format("wall '{}'", setup_.walls[overload.second].name) : fmt::format("grain {}", id[overload.second]));
+        at_wall ? fmt::format("wall '{}'", setup_.walls[overload.second].name)
+                : fmt::format("grain {}", id[overload.second]));
 }
 
 /// Brings grains back into the box and to their owners, contacts with them, and lists the pairs anew.
@@ -168,7 +175,8 @@ void GrainSimulation::describe_grains() {
     const std::size_t own = grains_.size(), all = grains_.size_with_halo();
     std::vector<double> units(all);
     for (std::size_t i = 0; i < all; ++i)
-        units[i] = dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
+        units[i] =
+            dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
     rows_.reset(grains_, units);
     responses_.acceleration.resize(own);
     responses_.angular.resize(own);
@@ -184,7 +192,8 @@ void GrainSimulation::describe_grains() {
 }
 
 void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records) {
-    const std::size_t materials = std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
+    const std::size_t materials =
+        std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
     const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
     at_walls_.clear();
@@ -237,8 +246,9 @@ void GrainSimulation::check_walls() const {
         for (std::size_t i = 0; i < grains_.size() && message.empty(); ++i)
             if (!(wall.distance({x[0][i], x[1][i], x[2][i]}) > 0) &&
                 !setup_.held[grains_.data(field::body)[i]])
-                message = fmt::format("step {}, time {} s: grain {} at ({:.6g}, {:.6g}, {:.6g}) m is behind wall '{}'",
-                                      step_, time_, grains_.data(field::id)[i], x[0][i], x[1][i], x[2][i], wall.name);
+                message = fmt::format(
+                    "step {}, time {} s: grain {} at ({:.6g}, {:.6g}, {:.6g}) m is behind wall '{}'", step_,
+                    time_, grains_.data(field::id)[i], x[0][i], x[1][i], x[2][i], wall.name);
     comm_.all_agree(1, message);
 }
 
@@ -258,10 +268,13 @@ GrainTotals GrainSimulation::totals() const {
     for (std::size_t i = 0; i < grains_.size(); ++i) {
         double speed2 = 0, spin2 = 0, potential_per_mass = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            const double v = grains_.data(field::velocity, axis)[i], w = grains_.data(field::angular_velocity, axis)[i];
+            const double v = grains_.data(field::velocity, axis)[i],
+                         w = grains_.data(field::angular_velocity, axis)[i];
             speed2 += v * v;
             spin2 += w * w;
-            potential_per_mass -= g[static_cast<std::size_t>(axis)] * grains_.data(field::position, axis)[i];
+            const auto a = static_cast<std::size_t>(axis);
+            if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
+                potential_per_mass -= g[a] * grains_.data(field::position, axis)[i];
             sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
         }
         sums[mass].add(m[i]);

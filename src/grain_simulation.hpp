@@ -18,16 +18,16 @@ namespace talus {
 
 /// Everything that defines a run of grains besides the grains: what a scene says, resolved.
 struct GrainSetup {
-    Box box;                              ///< three-dimensional; open or periodic along each axis
-    dem::AnyLawTable laws;                ///< of all pairs of materials
-    std::vector<std::uint8_t> material;   ///< of each body of grains, an index into `laws`
-    std::vector<std::uint8_t> held;       ///< one a body: 1 if its grains never move
+    Box box;                             ///< three-dimensional; open or periodic along each axis
+    dem::AnyLawTable laws;               ///< of all pairs of materials
+    std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
+    std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
     std::vector<dem::PlaneWall> walls;
-    dem::Vector3<> gravity;               ///< [m s-2]
-    double time_step = 0;                 ///< the same throughout [s]
-    double skin = 0;                      ///< gap up to which pairs are listed [m]; no result depends on it
+    dem::Vector3<> gravity;  ///< [m s-2]
+    double time_step = 0;    ///< the same throughout [s]
+    double skin = 0;         ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::metis;
-    int rebalance_interval = 10;          ///< steps between looks at the imbalance, at least
+    int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };
 
 /// Totals over all grains, exact sums rounded once: the same bits on any number of ranks.
@@ -58,12 +58,12 @@ class GrainSimulation {
     /// Collective.
     void resume(double time, std::uint64_t step, const ParticleSet& contacts);
 
-    /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond all
-    /// bounds, or a grain that was lost or left through a wall. Collective.
+    /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
+    /// all bounds, or a grain that was lost or left through a wall. Collective.
     void step();
 
-    double time() const { return time_; }                          ///< [s]
-    double time_step() const { return setup_.time_step; }          ///< [s]
+    double time() const { return time_; }                  ///< [s]
+    double time_step() const { return setup_.time_step; }  ///< [s]
     std::uint64_t step_count() const { return step_; }
     const ParticleSet& grains() const { return grains_; }
     const GrainSetup& setup() const { return setup_; }
@@ -77,8 +77,8 @@ class GrainSimulation {
     Phases& phases() { return phases_; }
     void reset_counters();
 
-    /// Brings the grains back into the box and to where they belong, as a checkpoint holds them, and returns the
-    /// contacts of this rank's grains. Changes no result. Collective.
+    /// Brings the grains back into the box and to where they belong, as a checkpoint holds them, and returns
+    /// the contacts of this rank's grains. Changes no result. Collective.
     ParticleSet save();
     /// Collective.
     GrainTotals totals() const;

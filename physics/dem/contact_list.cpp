@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "domain/grain_fields.hpp"
 #include "domain/lanes.hpp"
 
 namespace talus::dem {

@@ -16,15 +16,15 @@ namespace talus::dem {
 struct ContactList {
     explicit ContactList(std::size_t history_count_) : history_count(history_count_) {}
 
-    std::size_t history_count;               ///< values a pair
-    std::vector<std::uint32_t> first;        ///< grain of the lower id; own or copy
-    std::vector<std::uint32_t> second;       ///< grain of the higher id, or wall
-    std::vector<std::uint16_t> law;          ///< index of the pair of materials
-    std::vector<std::uint32_t> last_touch;   ///< evaluation at which the pair touched last; 0: never
-    std::vector<double> history;             ///< history_count values a pair, one pair after the other
-    std::vector<std::uint32_t> touching;     ///< pairs that touched at the last evaluation, with room behind
+    std::size_t history_count;              ///< values a pair
+    std::vector<std::uint32_t> first;       ///< grain of the lower id; own or copy
+    std::vector<std::uint32_t> second;      ///< grain of the higher id, or wall
+    std::vector<std::uint16_t> law;         ///< index of the pair of materials
+    std::vector<std::uint32_t> last_touch;  ///< evaluation at which the pair touched last; 0: never
+    std::vector<double> history;            ///< history_count values a pair, one pair after the other
+    std::vector<std::uint32_t> touching;    ///< pairs that touched at the last evaluation, with room behind
     std::size_t touching_count = 0;
-    std::size_t own_count = 0;               ///< pairs of own grains; those with a copy follow
+    std::size_t own_count = 0;  ///< pairs of own grains; those with a copy follow
 
     std::size_t size() const { return first.size(); }
     void clear();
@@ -39,10 +39,10 @@ struct ContactList {
 
 /// What pairs a list of grains must hold.
 struct PairRule {
-    double margin;                             ///< greatest gap that is listed [m]
-    std::span<const std::uint8_t> material;    ///< of each body
-    std::span<const std::uint8_t> held;        ///< one a body: pairs of such grains do not act
-    std::size_t materials;                     ///< number of materials
+    double margin;                           ///< greatest gap that is listed [m]
+    std::span<const std::uint8_t> material;  ///< of each body
+    std::span<const std::uint8_t> held;      ///< one a body: pairs of such grains do not act
+    std::size_t materials;                   ///< number of materials
 };
 
 /// Lists the pairs of grains with a gap below the margin of which one at least is this rank's own. Positions,
@@ -68,7 +68,8 @@ template <class KeyOfFirst, class KeyOfSecond>
 void restore_records(const ContactRecordMap& records, std::uint32_t now, KeyOfFirst&& key_of_first,
                      KeyOfSecond&& key_of_second, ContactList& list) {
     for (std::uint32_t p = 0; p < list.size(); ++p) {
-        const ContactRecord* record = records.find(key_of_first(list.first[p]), key_of_second(list.second[p]));
+        const ContactRecord* record =
+            records.find(key_of_first(list.first[p]), key_of_second(list.second[p]));
         if (!record) continue;
         list.last_touch[p] = now;
         list.touching[list.touching_count++] = p;

@@ -39,8 +39,7 @@ void find_touching(const GrainRows& rows, double reach, std::size_t begin, std::
         const Lanes limit = radius_a + radius_b + reach;
         Lanes excess = dot(r, r) - limit * limit;
         if (k + lane_count > end) excess = select(first_lanes(end - k), excess, Lanes(1.0));
-        list.touching_count +=
-            keep_negative(excess, pair.data(), list.touching.data() + list.touching_count);
+        list.touching_count += keep_negative(excess, pair.data(), list.touching.data() + list.touching_count);
     }
 }
 
@@ -99,9 +98,8 @@ class PairLoop {
         const ContactKinematics<Lanes> k =
             grain_kinematics(separation, norm(separation), a.grain, b.grain, Lanes(evaluation_.time_step));
 
-        const Lanes touched([&](auto lane) {
-            return list_.last_touch[pair[lane]] + 1 == evaluation_.now ? 1.0 : 0.0;
-        });
+        const Lanes touched(
+            [&](auto lane) { return list_.last_touch[pair[lane]] + 1 == evaluation_.now ? 1.0 : 0.0; });
         std::array<Lanes, history_count> history;
         for (std::size_t c = 0; c < history_count; ++c) {
             const Lanes stored([&](auto lane) { return list_.history[pair[lane] * history_count + c]; });
@@ -116,10 +114,12 @@ class PairLoop {
         }
 
         LaneMask bearable = first_lanes(lane_count);
-        const Lanes arm_a = contact_arm(a.grain.radius, k.overlap), arm_b = contact_arm(b.grain.radius, k.overlap);
+        const Lanes arm_a = contact_arm(a.grain.radius, k.overlap),
+                    arm_b = contact_arm(b.grain.radius, k.overlap);
         const ContactLoad<Lanes> opposite{-load.force, -load.couple};
         add(list_.first, pair, count, in_units(load.force, a.units_per_force, bearable),
-            in_units(torque_about_centre(k.normal, arm_a, load), a.units_per_force / a.grain.radius, bearable));
+            in_units(torque_about_centre(k.normal, arm_a, load), a.units_per_force / a.grain.radius,
+                     bearable));
         add(list_.second, pair, count, in_units(opposite.force, b.units_per_force, bearable),
             in_units(torque_about_centre(-k.normal, arm_b, opposite), b.units_per_force / b.grain.radius,
                      bearable));

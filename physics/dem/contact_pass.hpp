@@ -16,10 +16,10 @@ enum class Pairs : std::uint8_t { own, with_copies };
 /// What all contacts of one evaluation have in common.
 struct Evaluation {
     const GrainRows& rows;
-    double time_step;           ///< that histories advance by [s]
-    std::uint32_t now;          ///< number of the evaluation; contacts that did not touch at the last begin anew
-    std::span<ForceSum> sums;   ///< of the own grains
-    double largest_radius;      ///< [m]
+    double time_step;   ///< that histories advance by [s]
+    std::uint32_t now;  ///< number of the evaluation; contacts that did not touch at the last begin anew
+    std::span<ForceSum> sums;  ///< of the own grains
+    double largest_radius;     ///< [m]
 };
 
 /// A contact whose force is not finite or beyond what its grains could bear pressed flat.
@@ -31,13 +31,13 @@ struct Overload {
 /// Greatest gap across which any pair of grains up to a radius may act [m].
 double greatest_reach(const AnyLawTable& laws, double largest_radius);
 
-/// Finds the pairs that touch and adds their forces to both sides, as far as those are own grains. A pair with
-/// a copy is computed by both ranks, with the same bits.
+/// Finds the pairs that touch and adds their forces to both sides, as far as those are own grains. A pair
+/// with a copy is computed by both ranks, with the same bits.
 Overload evaluate_pairs(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
                         ContactList& list);
 
 /// The same for grains at walls, of which `list.second` is the index.
-Overload evaluate_walls(const Evaluation& evaluation, const AnyLawTable& laws, std::span<const PlaneWall> walls,
-                        ContactList& list);
+Overload evaluate_walls(const Evaluation& evaluation, const AnyLawTable& laws,
+                        std::span<const PlaneWall> walls, ContactList& list);
 
 }  // namespace talus::dem

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "domain/grain_fields.hpp"
+
 namespace talus::dem {
 
 ContactRecordMap::ContactRecordMap(std::span<const ContactRecord> records)
@@ -92,7 +94,8 @@ void for_each_component(Set& contacts, std::span<const FieldInfo* const> fields,
 }  // namespace
 
 ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fields) {
-    ParticleSet contacts = ParticleSet::records("contacts", dimension);
+    ParticleSet contacts("contacts", dimension);
+    std::erase_if(contacts.columns(), [](const Column& column) { return column.info == &field::position; });
     contacts.add(field::first_id);
     contacts.add(field::second_id);
     for (const FieldInfo* info : fields) contacts.add(*info);
@@ -124,7 +127,8 @@ ParticleSet saved_contacts(std::vector<ContactRecord> saved, int dimension,
 }
 
 std::vector<ContactRecord> read_contacts(const Communicator& comm, const ParticleSet& contacts,
-                                         std::span<const FieldInfo* const> fields, const ParticleSet& grains) {
+                                         std::span<const FieldInfo* const> fields,
+                                         const ParticleSet& grains) {
     std::vector<ContactRecord> rows(contacts.size());
     for (std::size_t k = 0; k < rows.size(); ++k)
         rows[k] = {contacts.data(field::first_id)[k], contacts.data(field::second_id)[k], {}};

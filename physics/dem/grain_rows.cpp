@@ -1,5 +1,7 @@
 #include "physics/dem/grain_rows.hpp"
 
+#include "domain/grain_fields.hpp"
+
 namespace talus::dem {
 
 void GrainRows::reset(const ParticleSet& grains, std::span<const double> units) {

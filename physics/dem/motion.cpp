@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "domain/grain_fields.hpp"
+
 namespace talus::dem {
 
 PeriodicPlaces::PeriodicPlaces(const Box& box) {
     constexpr int bits = 50;
     for (std::size_t a = 0; a < 3; ++a) {
         if (box.boundary[a] != Boundary::periodic) continue;
-        const double farthest = std::max({std::abs(box.lower[a]), std::abs(box.upper[a]), box.upper[a] - box.lower[a]});
+        const double farthest =
+            std::max({std::abs(box.lower[a]), std::abs(box.upper[a]), box.upper[a] - box.lower[a]});
         int exponent = 0;
         std::frexp(farthest, &exponent);
         shifts_[a] = std::ldexp(1.5, exponent + 52 - bits);
@@ -36,8 +39,8 @@ void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) 
 
 namespace {
 
-void predict(ParticleSet& grains, double time_step, const Field<double>& velocity, const Field<double>& acceleration,
-             const Field<double>& predicted) {
+void predict(ParticleSet& grains, double time_step, const Field<double>& velocity,
+             const Field<double>& acceleration, const Field<double>& predicted) {
     for (int axis = 0; axis < 3; ++axis) {
         const double *v = grains.data(velocity, axis), *a = grains.data(acceleration, axis);
         double* p = grains.data(predicted, axis);
@@ -54,7 +57,8 @@ void kick(double* velocity, double* acceleration, double now, double half_step) 
 
 void predict(ParticleSet& grains, double time_step) {
     predict(grains, time_step, field::velocity, field::acceleration, field::predicted_velocity);
-    predict(grains, time_step, field::angular_velocity, field::angular_acceleration, field::predicted_angular_velocity);
+    predict(grains, time_step, field::angular_velocity, field::angular_acceleration,
+            field::predicted_angular_velocity);
 }
 
 double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
@@ -66,10 +70,12 @@ double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Re
         const auto a = static_cast<std::size_t>(axis);
         const double *x = grains.data(field::position, axis), *start = responses.start[a].data();
         double *v = grains.data(field::velocity, axis), *dv = grains.data(field::acceleration, axis);
-        double *w = grains.data(field::angular_velocity, axis), *dw = grains.data(field::angular_acceleration, axis);
+        double *w = grains.data(field::angular_velocity, axis),
+               *dw = grains.data(field::angular_acceleration, axis);
         for (std::size_t i = 0; i < grains.size(); ++i) {
             const double response = responses.acceleration[i];
-            kick(v + i, dv + i, static_cast<double>(sums[i].force[a]) * response + (response > 0 ? g[a] : 0.0), half_step);
+            kick(v + i, dv + i,
+                 static_cast<double>(sums[i].force[a]) * response + (response > 0 ? g[a] : 0.0), half_step);
             kick(w + i, dw + i, static_cast<double>(sums[i].torque[a]) * responses.angular[i], half_step);
             const double moved = x[i] + time_step * (v[i] + 0.5 * time_step * dv[i]) - start[i];
             moved2[i] += moved * moved;

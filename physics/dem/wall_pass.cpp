@@ -19,8 +19,8 @@ bool add(const Vector3<>& vector, double units_per_force, std::int64_t* sum) {
 
 }  // namespace
 
-Overload evaluate_walls(const Evaluation& evaluation, const AnyLawTable& laws, std::span<const PlaneWall> walls,
-                        ContactList& list) {
+Overload evaluate_walls(const Evaluation& evaluation, const AnyLawTable& laws,
+                        std::span<const PlaneWall> walls, ContactList& list) {
     Overload overload;
     list.touching_count = 0;
     const auto loop = [&](const auto& table) {
@@ -41,7 +41,8 @@ Overload evaluate_walls(const Evaluation& evaluation, const AnyLawTable& laws, s
             std::copy_n(history.data(), history.size(), stored);
             list.last_touch[p] = evaluation.now;
             ForceSum& sum = evaluation.sums[list.first[p]];
-            const Vector3<> torque = torque_about_centre(k.normal, contact_arm(g.grain.radius, overlap), load);
+            const Vector3<> torque =
+                torque_about_centre(k.normal, contact_arm(g.grain.radius, overlap), load);
             const bool bearable = add(load.force, g.units_per_force, sum.force) &&
                                   add(torque, g.units_per_force / g.grain.radius, sum.torque);
             if (!bearable && !overload.found) overload = {true, list.first[p], list.second[p]};
