@@ -252,6 +252,16 @@ void GrainSimulation::check_walls() const {
     comm_.all_agree(1, message);
 }
 
+std::uint64_t GrainSimulation::bytes_of_lists() const {
+    std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
+    for (const dem::ContactList* list : {&pairs_, &at_walls_}) bytes += list->bytes();
+    for (const std::vector<double>* values :
+         {&responses_.acceleration, &responses_.angular, &responses_.start[0], &responses_.start[1],
+          &responses_.start[2]})
+        bytes += values->capacity() * sizeof(double);
+    return bytes;
+}
+
 void GrainSimulation::reset_counters() {
     evaluated_ = lists_ = 0;
     phases_ = {};

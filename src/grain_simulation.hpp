@@ -74,6 +74,8 @@ class GrainSimulation {
     std::uint64_t evaluated_contacts() const { return evaluated_; }
     /// Times the list of pairs was made since the counters were reset.
     std::uint64_t list_count() const { return lists_; }
+    /// Memory of pairs, contacts and forces on this rank, besides the fields.
+    std::uint64_t bytes_of_lists() const;
     Phases& phases() { return phases_; }
     void reset_counters();
 

@@ -27,6 +27,11 @@ struct ContactList {
     std::size_t own_count = 0;  ///< pairs of own grains; those with a copy follow
 
     std::size_t size() const { return first.size(); }
+    std::size_t bytes() const {
+        return (first.capacity() + second.capacity() + last_touch.capacity() + touching.capacity()) *
+                   sizeof(std::uint32_t) +
+               law.capacity() * sizeof(std::uint16_t) + history.capacity() * sizeof(double);
+    }
     void clear();
     void add(std::uint32_t first_, std::uint32_t second_, std::size_t law_) {
         first.push_back(first_);

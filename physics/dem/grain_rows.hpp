@@ -24,6 +24,8 @@ class GrainRows {
 
     const double* operator[](std::size_t i) const { return values_.data() + i * width; }
 
+    std::size_t bytes() const { return values_.capacity() * sizeof(double); }
+
   private:
     std::vector<double> values_;  ///< x y z radius | v_x v_y v_z mass | w_x w_y w_z 1/unit
 };

@@ -3,60 +3,57 @@
 #include <optional>
 
 #include "src/run/commands.hpp"
+#include "src/run/evolution.hpp"
 #include "src/run/recorder.hpp"
-#include "src/run/restart.hpp"
-#include "src/run/scene_checks.hpp"
 #include "src/run/stop_request.hpp"
-#include "src/setup/scene_setup.hpp"
 
 namespace talus {
 
 namespace {
 
-bool finished(const Simulation& simulation, double end_time, const RunOptions& options) {
-    if (options.steps && simulation.step_count() >= *options.steps) return true;
-    return simulation.time() >= end_time;
+bool finished(const Evolution& evolution, double end_time, const RunOptions& options) {
+    if (options.steps && evolution.step_count() >= *options.steps) return true;
+    return evolution.time() >= end_time;
 }
 
 }  // namespace
 
 int run_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
-    const SceneSetup setup = read_scene(comm, scene);
-    const double end_time = options.until.value_or(setup.output.end_time);
-    check_plan(scene, setup, end_time);
+    const std::unique_ptr<Evolution> evolution = read_evolution(comm, scene, options.until.value_or(0));
+    const double end_time = options.until.value_or(evolution->output().end_time);
     const std::filesystem::path folder = output_folder(scene, options);
     StopRequest stop(comm, folder, options.walltime);
 
     // The folder is touched only once it is known that the run can begin.
-    std::optional<Restart> restart;
-    if (!options.restart.empty()) restart = read_restart(comm, options.restart, folder, setup);
-    Simulation simulation(comm, setup.simulation,
-                          restart ? std::move(restart->particles) : make_particles(comm, setup));
-    check_box(scene, simulation);
-    Recorder recorder(comm, folder, scene, setup, !restart);
+    std::optional<ReadCheckpoint> restart;
+    if (options.restart.empty())
+        evolution->create();
+    else
+        restart = evolution->read(options.restart, folder);
+    Recorder recorder(comm, folder, scene, evolution->output(), !restart);
     if (restart) {
         recorder.go_on_from(*restart);
-        simulation.resume(restart->state.time, restart->state.time_step, restart->state.step);
+        evolution->resume(restart->state);
     } else {
-        simulation.start();
+        evolution->start();
     }
-    recorder.begin(simulation, end_time);
+    recorder.begin(*evolution, end_time);
     try {
-        while (!finished(simulation, end_time, options)) {
+        while (!finished(*evolution, end_time, options)) {
             if (const std::string why = stop.reason(recorder.longest_step(), recorder.checkpoint_seconds());
                 !why.empty()) {
-                recorder.stop_early(simulation, why);
+                recorder.stop_early(*evolution, why);
                 return exit_stopped_early;
             }
-            simulation.step();
-            recorder.after_step(simulation);
+            evolution->step();
+            recorder.after_step(*evolution);
         }
     } catch (const AgreedError& error) {
         throw AgreedError(error.exit_code,
-                          fmt::format("{}\n{}", error.what(), recorder.after_failure(simulation)));
+                          fmt::format("{}\n{}", error.what(), recorder.after_failure(*evolution)));
     }
-    recorder.finish(simulation);
+    recorder.finish(*evolution);
     return exit_done;
 }
 

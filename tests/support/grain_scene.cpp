@@ -1,8 +1,9 @@
 #include "tests/support/grain_scene.hpp"
-#include "domain/grain_fields.hpp"
 
 #include <numbers>
 #include <stdexcept>
+
+#include "domain/grain_fields.hpp"
 
 namespace talus::test {
 
@@ -15,11 +16,8 @@ dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials) {
     return dem::LawTable<dem::HertzLaw>{
         dem::PairTable<dem::HertzLaw<double>>(materials.size(), [&](std::size_t a, std::size_t b) {
             const dem::PairProperties pair = pairs(a, b);
-            return dem::HertzLaw<double>{dem::hertz_mindlin(pair, dem::EndOfContact::may_attract),
-                                         {pair.friction},
-                                         {},
-                                         {},
-                                         {}};
+            return dem::HertzLaw<double>{
+                dem::hertz_mindlin(pair, dem::EndOfContact::may_attract), {pair.friction}, {}, {}, {}};
         })};
 }
 
@@ -41,7 +39,8 @@ ParticleSet grain_set(const Communicator& comm, const std::vector<GrainState>& g
     GrainSimulation::add_fields(set);
     std::vector<std::size_t> mine;
     for (std::size_t k = 0; k < grains.size(); ++k)
-        if (k % static_cast<std::size_t>(comm.size()) == static_cast<std::size_t>(comm.rank())) mine.push_back(k);
+        if (k % static_cast<std::size_t>(comm.size()) == static_cast<std::size_t>(comm.rank()))
+            mine.push_back(k);
     set.resize(mine.size());
     for (std::size_t i = 0; i < mine.size(); ++i) {
         const GrainState& grain = grains[mine[i]];
@@ -68,8 +67,12 @@ GrainState state_of(const GrainSimulation& simulation, std::uint64_t id) {
         const auto take = [&](const Field<double>& field) {
             return dem::Vector3<>{set.data(field, 0)[i], set.data(field, 1)[i], set.data(field, 2)[i]};
         };
-        return {take(field::position), take(field::velocity), take(field::angular_velocity),
-                set.data(field::radius)[i], 0, set.data(field::body)[i]};
+        return {take(field::position),
+                take(field::velocity),
+                take(field::angular_velocity),
+                set.data(field::radius)[i],
+                0,
+                set.data(field::body)[i]};
     }
     throw std::logic_error("no such grain on this rank");
 }

@@ -19,7 +19,8 @@ double mass_of(const GrainState& grain);
 /// A Hertzian law of all pairs of materials, restitution taken as may_attract.
 dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials);
 
-/// A scene without walls, gravity or boundaries: one body for each material. The skin is a tenth of the radius.
+/// A scene without walls, gravity or boundaries: one body for each material. The skin is a tenth of the
+/// radius.
 GrainSetup grain_setup(const std::vector<dem::GrainMaterial>& materials, double radius, double time_step);
 
 /// The grains, ids in order; rank r gets those with k mod size = r.

@@ -13,9 +13,11 @@ using dem::Vector3;
 
 const dem::GrainMaterial limestone{
     .name = "limestone", .density = 2500, .youngs_modulus = 20e9, .poisson_ratio = 0.25, .friction = 0.35};
-const dem::GrainMaterial aluminium{.name = "aluminium", .density = 2699, .youngs_modulus = 70e9, .poisson_ratio = 0.3};
+const dem::GrainMaterial aluminium{
+    .name = "aluminium", .density = 2699, .youngs_modulus = 70e9, .poisson_ratio = 0.3};
 
-GrainSimulation started(const Communicator& comm, const GrainSetup& setup, const std::vector<GrainState>& grains) {
+GrainSimulation started(const Communicator& comm, const GrainSetup& setup,
+                        const std::vector<GrainState>& grains) {
     return {comm, setup, grain_set(comm, grains)};
 }
 
@@ -43,8 +45,8 @@ Collision collide(GrainSimulation& run, double mass, Overlap&& overlap_of) {
     return found;
 }
 
-// Y. C. Chung, J. Y. Ooi, Granular Matter 13 (2011) 643, tests 1 and 2: elastic normal impact. References are the
-// closed forms of Hertz's law; 0.3 % is what other codes pass the same test with.
+// Y. C. Chung, J. Y. Ooi, Granular Matter 13 (2011) 643, tests 1 and 2: elastic normal impact. References are
+// the closed forms of Hertz's law; 0.3 % is what other codes pass the same test with.
 TEST(Grains, ElasticImpactOfTwoSpheres) {
     const Communicator comm(MPI_COMM_SELF);
     const GrainState grain{{-0.010001, 0, 0}, {10, 0, 0}, {}, 0.01, 2500};
@@ -69,7 +71,8 @@ TEST(Grains, ElasticImpactOnAWall) {
     GrainSetup setup = grain_setup({aluminium, rigid}, 0.1, 1e-6);
     setup.walls.push_back({"floor", {}, {0, 0, 1}, 1});
     GrainSimulation run = started(comm, setup, {grain});
-    const Collision found = collide(run, mass_of(grain), [](const GrainState& s) { return 0.1 - s.position.z; });
+    const Collision found =
+        collide(run, mass_of(grain), [](const GrainState& s) { return 0.1 - s.position.z; });
     EXPECT_NEAR(found.overlap, 49.72e-6, 0.003 * 49.72e-6);
     EXPECT_NEAR(found.force, 11.370e3, 0.003 * 11.370e3);
     EXPECT_NEAR(found.duration, 731.6e-6, 0.003 * 731.6e-6);
@@ -105,7 +108,8 @@ GrainState oblique_impact(double angle, const dem::GrainMaterial& material, doub
                            {},
                            radius,
                            material.density};
-    GrainSetup setup = grain_setup({material, {"rigid", 0, 1e30, 0.3, material.restitution, material.friction}}, radius, time_step);
+    GrainSetup setup = grain_setup(
+        {material, {"rigid", 0, 1e30, 0.3, material.restitution, material.friction}}, radius, time_step);
     setup.walls.push_back({"floor", {}, {0, 0, 1}, 1});
     GrainSimulation run = started(comm, setup, {grain});
     collide(run, mass_of(grain), [&](const GrainState& s) { return radius - s.position.z; });
@@ -125,7 +129,9 @@ TEST(Grains, SlidingImpact) {
     for (const double degrees : {40.0, 60.0, 80.0}) {
         const double angle = degrees * std::numbers::pi / 180;
         const GrainState end = oblique_impact(angle, oxide, 1e-8);
-        EXPECT_NEAR(end.velocity.x, speed * std::sin(angle) * (1 - mu * (1 + e) / std::tan(angle)), 0.002 * speed) << degrees;
+        EXPECT_NEAR(end.velocity.x, speed * std::sin(angle) * (1 - mu * (1 + e) / std::tan(angle)),
+                    0.002 * speed)
+            << degrees;
         EXPECT_NEAR(std::abs(end.angular_velocity.y), 2.5 * mu * (1 + e) * speed * std::cos(angle) / radius,
                     0.01 * 2.5 * mu * (1 + e) * speed * std::cos(angle) / radius)
             << degrees;
@@ -146,8 +152,8 @@ TEST(Grains, NoImpactGainsEnergy) {
     }
 }
 
-// Elastic, without friction: the error of the rebound must fall with the square of the step or faster, though Hertz's
-// law begins with a kink in its stiffness.
+// Elastic, without friction: the error of the rebound must fall with the square of the step or faster, though
+// Hertz's law begins with a kink in its stiffness.
 TEST(Grains, StepIsOfSecondOrder) {
     dem::GrainMaterial material = oxide;
     material.restitution = 1;
@@ -168,7 +174,12 @@ TEST(Grains, StepIsOfSecondOrder) {
 // A box of grains thrown at each other: forces act on both sides alike.
 TEST(Grains, MomentumIsKept) {
     const Communicator comm(MPI_COMM_SELF);
-    dem::GrainMaterial material{.name = "glass", .density = 2500, .youngs_modulus = 1e7, .poisson_ratio = 0.2, .restitution = 0.7, .friction = 0.5};
+    dem::GrainMaterial material{.name = "glass",
+                                .density = 2500,
+                                .youngs_modulus = 1e7,
+                                .poisson_ratio = 0.2,
+                                .restitution = 0.7,
+                                .friction = 0.5};
     std::vector<GrainState> grains;
     for (int k = 0; k < 125; ++k)
         grains.push_back({{0.0105 * (k % 5), 0.0105 * (k / 5 % 5), 0.0105 * (k / 25)},
@@ -177,7 +188,10 @@ TEST(Grains, MomentumIsKept) {
                           0.005,
                           2500});
     GrainSetup setup = grain_setup({material}, 0.005, 1e-6);
-    setup.box = {3, {-0.005, -0.005, -0.005}, {0.048, 0.048, 0.048}, {Boundary::periodic, Boundary::periodic, Boundary::periodic}};
+    setup.box = {3,
+                 {-0.005, -0.005, -0.005},
+                 {0.048, 0.048, 0.048},
+                 {Boundary::periodic, Boundary::periodic, Boundary::periodic}};
     GrainSimulation run = started(comm, setup, grains);
     run.start();
     const GrainTotals before = run.totals();
@@ -191,10 +205,19 @@ TEST(Grains, MomentumIsKept) {
 
 TEST(Grains, ListsMadeAtOtherTimesChangeNothing) {
     const Communicator comm(MPI_COMM_SELF);
-    dem::GrainMaterial material{.name = "glass", .density = 2500, .youngs_modulus = 1e7, .poisson_ratio = 0.2, .restitution = 0.7, .friction = 0.5};
+    dem::GrainMaterial material{.name = "glass",
+                                .density = 2500,
+                                .youngs_modulus = 1e7,
+                                .poisson_ratio = 0.2,
+                                .restitution = 0.7,
+                                .friction = 0.5};
     std::vector<GrainState> grains;
     for (int k = 0; k < 27; ++k)
-        grains.push_back({{0.0101 * (k % 3), 0.0101 * (k / 3 % 3), 0.0101 * (k / 9)}, {std::sin(3.0 * k), std::cos(5.0 * k), 0}, {}, 0.005, 2500});
+        grains.push_back({{0.0101 * (k % 3), 0.0101 * (k / 3 % 3), 0.0101 * (k / 9)},
+                          {std::sin(3.0 * k), std::cos(5.0 * k), 0},
+                          {},
+                          0.005,
+                          2500});
     std::vector<GrainState> ends;
     std::vector<std::uint64_t> lists;
     for (const double skin : {0.00005, 0.0005, 0.002}) {
@@ -230,7 +253,8 @@ TEST(Grains, BehindAWallStopsTheRun) {
 
 TEST(Grains, ForceBeyondAllBoundsStopsTheRun) {
     const Communicator comm(MPI_COMM_SELF);
-    const GrainState grain{{0, 0, 0}, {}, {}, 0.01, 2500}, inside{{0.005, 0, 0}, {-1e7, 0, 0}, {}, 0.01, 2500};
+    const GrainState grain{{0, 0, 0}, {}, {}, 0.01, 2500},
+        inside{{0.005, 0, 0}, {-1e7, 0, 0}, {}, 0.01, 2500};
     dem::GrainMaterial damped = limestone;
     damped.restitution = 0.1;
     GrainSimulation run = started(comm, grain_setup({damped}, 0.01, 1e-7), {grain, inside});
@@ -239,7 +263,8 @@ TEST(Grains, ForceBeyondAllBoundsStopsTheRun) {
         run.step();
         FAIL() << "no fault was found";
     } catch (const AgreedError& error) {
-        EXPECT_NE(std::string(error.what()).find("between grain 0 and grain 1"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("between grain 0 and grain 1"), std::string::npos)
+            << error.what();
     }
 }
 
