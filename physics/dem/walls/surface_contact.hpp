@@ -1,0 +1,27 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "physics/dem/vector3.hpp"
+
+namespace talus::dem {
+
+/// A place where a sphere is near a surface: where the distance to its centre is least, near by on the
+/// surface.
+struct SurfaceContact {
+    Vector3<> normal;     ///< unit vector from the surface to the centre
+    double distance;      ///< of the centre from the surface [m]
+    std::uint32_t place;  ///< names the contact for what its law remembers: the same while a grain moves over
+                          ///< a smooth part of the surface, different for the contacts of one grain
+};
+
+/// Greatest angle of two contacts' normals on one smooth part of a surface that count as one [rad].
+inline constexpr double one_contact_angle = 0.7853981633974483;
+
+/// Makes one of the contacts of each smooth part whose normals are close: a facetted hollow would be touched
+/// twice where the curved one it stands for is touched once. `contacts` from `begin` on come with the number
+/// of their part as place; normal and distance become means with the weights `reach` - distance, so that the
+/// force is continuous as a contact comes and goes.
+void unite_smooth_contacts(std::vector<SurfaceContact>& contacts, std::size_t begin, double reach);
+
+}  // namespace talus::dem
