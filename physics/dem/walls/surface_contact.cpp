@@ -8,10 +8,11 @@ namespace talus::dem {
 namespace {
 
 constexpr std::uint32_t contacts_of_one_part = 8;
+constexpr double same_direction = 1e-12;
 
 }  // namespace
 
-void unite_smooth_contacts(std::vector<SurfaceContact>& contacts, std::size_t begin, double reach) {
+void unite_smooth_contacts(std::vector<SurfaceContact>& contacts, std::size_t begin) {
     const auto first = contacts.begin() + static_cast<std::ptrdiff_t>(begin);
     std::stable_sort(first, contacts.end(), [](const SurfaceContact& a, const SurfaceContact& b) {
         return a.place != b.place ? a.place < b.place : a.distance < b.distance;
@@ -32,10 +33,14 @@ void unite_smooth_contacts(std::vector<SurfaceContact>& contacts, std::size_t be
         const auto next = static_cast<std::size_t>(with_nearest - contacts.begin());
         SurfaceContact united = nearest;
         if (next > c + 1) {
-            Vector3<> normals;
-            double weights = 0, distances = 0;
+            Vector3<> normals = nearest.normal;
+            double weights = 1, distances = nearest.distance;
             for (std::size_t k = c; k < next; ++k) {
-                const double weight = reach - contacts[k].distance;
+                const double cosine = dot(contacts[k].normal, nearest.normal);
+                const double range = nearest.distance * (1 - cosine);
+                if (!(range > same_direction * nearest.distance))
+                    continue;  // the nearest itself, or its like
+                const double weight = std::max(nearest.distance - contacts[k].distance * cosine, 0.0) / range;
                 normals += weight * contacts[k].normal;
                 distances += weight * contacts[k].distance;
                 weights += weight;

@@ -20,8 +20,9 @@ inline constexpr double one_contact_angle = 0.7853981633974483;
 
 /// Makes one of the contacts of each smooth part whose normals are close: a facetted hollow would be touched
 /// twice where the curved one it stands for is touched once. `contacts` from `begin` on come with the number
-/// of their part as place; normal and distance become means with the weights `reach` - distance, so that the
-/// force is continuous as a contact comes and goes.
-void unite_smooth_contacts(std::vector<SurfaceContact>& contacts, std::size_t begin, double reach);
+/// of their part as place. Normal and distance become means; the weight of another facet falls from 1, where
+/// it is as near as the nearest, d, to 0 at the distance d/cos(angle between them), where it ends at the edge
+/// they share: the force is continuous as a facet comes and goes.
+void unite_smooth_contacts(std::vector<SurfaceContact>& contacts, std::size_t begin);
 
 }  // namespace talus::dem

@@ -289,7 +289,7 @@ void TriangleSurface::find_contacts(std::span<const std::uint32_t> triangles, co
     for (const Nearest& candidate : candidates)
         if (is_contact(candidate, candidates))
             contacts.push_back({candidate.normal, candidate.distance, part_[candidate.triangle]});
-    unite_smooth_contacts(contacts, begin, reach);
+    unite_smooth_contacts(contacts, begin);
 }
 
 }  // namespace talus::dem
