@@ -34,8 +34,9 @@ struct ConstantRollingTorque {
 
 /// Elastic-plastic spring and dashpot: M = -k_r theta, k_r = 9/4 k_n (mu_r R*)^2, |k_r theta| <= mu_r R* F_n,
 /// and while below that -2 eta sqrt(I k_r) theta' as well. Model C of J. Ai, J.-F. Chen, J. M. Rotter, J. Y.
-/// Ooi, Powder Technol. 206 (2011) 269, eqs 19-29; k_r from K. Iwashita, M. Oda, J. Eng. Mech. 124 (1998)
-/// 285.
+/// Ooi, Powder Technol. 206 (2011) 269; k_r from K. Iwashita, M. Oda, J. Eng. Mech. 124 (1998) 285. Unlike
+/// there the sum of both is capped too, or a grain that lands rolling would feel a multiple of the cap for a
+/// moment.
 template <class Real = double>
 struct ElasticPlasticRolling {
     static constexpr std::size_t history_count = 3;  ///< rolling angle [rad]
@@ -58,7 +59,8 @@ struct ElasticPlasticRolling {
         history[1] = angle.y;
         history[2] = angle.z;
         const Real dashpot = select(plastic, Real(0.0), 2 * damping * sqrt(k.effective_inertia * stiffness));
-        return -(stiffness * angle) - dashpot * rolling;
+        const Vector3<Real> torque = -(stiffness * angle) - dashpot * rolling;
+        return min(cap / max(norm(torque), Real(1e-300)), Real(1.0)) * torque;
     }
 };
 
