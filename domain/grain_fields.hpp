@@ -21,7 +21,8 @@ inline constexpr Field<std::uint64_t> copied_id{"copied_id", "1",  scalar,
 inline constexpr Field<std::uint64_t> first_id{
     "first_id", "1", scalar, state, owner, "lower id of the two grains in contact; the grain at a wall"};
 inline constexpr Field<std::uint64_t> second_id{
-    "second_id", "1", scalar, state, owner, "higher id of the two grains in contact; 2^63 + index of a wall"};
+    "second_id", "1",   scalar,
+    state,       owner, "higher id of the two grains in contact; 2^63 + 2^32 wall + place at a wall"};
 inline constexpr Field<double> sliding{
     "sliding", "m",   vector,
     state,     owner, "tangential displacement of the contact, as the first grain sees it"};

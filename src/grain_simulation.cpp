@@ -44,8 +44,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       setup_(std::move(setup)),
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
-      pairs_(history_count(setup_.laws)),
-      at_walls_(history_count(setup_.laws)) {
+      pairs_(history_count(setup_.laws)) {
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
@@ -73,7 +72,7 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 }
 
 void GrainSimulation::start() {
-    arrange({});
+    arrange({}, time_);
     dem::predict(grains_, 0);
     evaluate(0);
     finish(0);
@@ -82,14 +81,14 @@ void GrainSimulation::start() {
 void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts) {
     time_ = time;
     step_ = last_balance_ = step;
-    arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_));
+    arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_), time_);
     outdated_ = true;  // how far grains have moved is not known
 }
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
     dem::drift(grains_, setup_.time_step, places_);
-    if (outdated_) arrange(records_of_contacts());
+    if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
     dem::predict(grains_, setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
@@ -110,22 +109,26 @@ void GrainSimulation::evaluate(double time_step) {
     const dem::Evaluation evaluation{rows_, time_step, static_cast<std::uint32_t>(step_) + 1, sums_,
                                      largest_radius_};
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
-    refuse_overload(dem::evaluate_walls(evaluation, setup_.laws, setup_.walls, at_walls_), true);
+    poses_ = poses_at(time_ + time_step);
+    refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
     halo.finish();
     phases_.enter(Phase::forces);
     rows_.update(grains_, own, grains_.size_with_halo());
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
-    evaluated_ += pairs_.touching_count + at_walls_.touching_count;
+    evaluated_ += pairs_.touching_count + at_walls_.touches().size();
 }
 
 void GrainSimulation::finish(double kick_step) {
     phases_.enter(Phase::motion);
     const double moved2 =
         dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step);
-    // Grains may come nearer by half the skin each before a pair is missing in the list.
+    // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
+    // the list.
     const double allowed = 0.499 * setup_.skin;
-    std::array<int, 2> flags{moved2 > allowed * allowed, !fault_.empty()};
+    const bool walls_moved = walls_move() && at_walls_.displacement(rows_, poses_at(time_ + setup_.time_step),
+                                                                    listed_gap()) > allowed;
+    std::array<int, 2> flags{walls_moved || moved2 > allowed * allowed, !fault_.empty()};
     phases_.enter(Phase::wait);
     comm_.all_max(std::span<int>(flags));
     outdated_ = flags[0] > 0;
@@ -135,19 +138,43 @@ void GrainSimulation::finish(double kick_step) {
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
     if (!overload.found || !fault_.empty()) return;
     const std::uint64_t* id = grains_.data(field::copied_id);
-    fault_ = fmt::format(
-        "step {}, time {} s: the force between grain {} and {} is not finite, or beyond that of a grain "
-        "pressed flat; "
-        "a smaller time step, or grains that do not overlap at the start?",
-        step_, time_, id[overload.first],
-        at_wall ? fmt::format("wall '{}'", setup_.walls[overload.second].name)
-                : fmt::format("grain {}", id[overload.second]));
+    const std::string place = fmt::format(
+        "({:.6g}, {:.6g}, {:.6g}) m", grains_.data(field::position, 0)[overload.first],
+        grains_.data(field::position, 1)[overload.first], grains_.data(field::position, 2)[overload.first]);
+    const std::string when = fmt::format("step {}, time {} s: ", step_, time_);
+    if (overload.behind) {
+        fault_ = when + fmt::format("grain {} at {} has left through wall '{}'", id[overload.first], place,
+                                    setup_.walls[overload.second].name);
+        return;
+    }
+    fault_ = when + fmt::format(
+                        "the force between grain {} at {} and {} is not finite, or beyond that of a grain "
+                        "pressed flat; a smaller time step, or grains that do not overlap at the start?",
+                        id[overload.first], place,
+                        at_wall ? fmt::format("wall '{}'", setup_.walls[overload.second].name)
+                                : fmt::format("grain {}", id[overload.second]));
 }
 
-/// Brings grains back into the box and to their owners, contacts with them, and lists the pairs anew.
-void GrainSimulation::arrange(std::vector<dem::ContactRecord> records) {
+std::vector<dem::WallPose> GrainSimulation::poses_at(double time) const {
+    std::vector<dem::WallPose> poses;
+    for (const dem::Wall& wall : setup_.walls) poses.push_back(wall.motion.pose(time));
+    return poses;
+}
+
+/// Whether any wall ever does.
+bool GrainSimulation::walls_move() const {
+    const auto moves = [](const dem::Wall& wall) {
+        const dem::WallMotion& m = wall.motion;
+        return norm(m.velocity) > 0 || norm(m.amplitude) > 0 || m.angular_velocity != 0 ||
+               m.angle_amplitude != 0;
+    };
+    return std::any_of(setup_.walls.begin(), setup_.walls.end(), moves);
+}
+
+/// Brings grains back into the box and to their owners, contacts with them, and lists the pairs anew. `time`:
+/// that of the positions [s].
+void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double time) {
     phases_.enter(Phase::decompose);
-    check_walls();
     apply_boundaries(grains_, setup_.box);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
     if (interval > 0 && step_ >= last_balance_ + interval && pairs_.size() > 0) {
@@ -164,7 +191,7 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records) {
     halo.begin(grains_, {&field::position, &field::radius, &field::mass, &field::body, &field::copied_id});
     halo.finish();
     describe_grains();
-    list_contacts(records);
+    list_contacts(records, time);
     ++lists_;
 }
 
@@ -191,29 +218,19 @@ void GrainSimulation::describe_grains() {
     }
 }
 
-void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records) {
+void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records, double time) {
     const std::size_t materials =
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
     const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
-    at_walls_.clear();
-    const double* radius = grains_.data(field::radius);
-    const std::uint8_t* body = grains_.data(field::body);
-    const std::array<const double*, 3> x{grains_.data(field::position, 0), grains_.data(field::position, 1),
-                                         grains_.data(field::position, 2)};
-    for (std::uint32_t i = 0; i < grains_.size(); ++i) {
-        if (setup_.held[body[i]]) continue;
-        for (std::uint32_t w = 0; w < setup_.walls.size(); ++w)
-            if (setup_.walls[w].distance({x[0][i], x[1][i], x[2][i]}) < radius[i] + listed_gap())
-                at_walls_.add(i, w, setup_.material[body[i]] * materials + setup_.walls[w].material);
-    }
-    at_walls_.finish();
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
     const auto now = static_cast<std::uint32_t>(step_) + 1;
     dem::restore_records(map, now, id_of, id_of, pairs_);
-    dem::restore_records(map, now, id_of, dem::wall_key, at_walls_);
+    poses_ = poses_at(time);
+    at_walls_.list(grains_, setup_.walls, poses_, rule);
+    at_walls_.restore(records, grains_);
 }
 
 std::vector<dem::ContactRecord> GrainSimulation::records_of_contacts() const {
@@ -226,35 +243,20 @@ std::vector<dem::ContactRecord> GrainSimulation::records_below(std::size_t end) 
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     std::vector<dem::ContactRecord> records;
     dem::append_records(pairs_, end, id_of, id_of, records);
-    dem::append_records(at_walls_, end, id_of, dem::wall_key, records);
+    at_walls_.append_records(grains_, records);
     return records;
 }
 
 ParticleSet GrainSimulation::save() {
-    arrange(records_of_contacts());
+    arrange(records_of_contacts(), time_);
     outdated_ = true;
     phases_.stop();
     return dem::saved_contacts(records_below(grains_.size()), grains_.dimension(), history_fields(setup_));
 }
 
-/// Throws AgreedError naming a grain whose centre is behind a wall.
-void GrainSimulation::check_walls() const {
-    const std::array<const double*, 3> x{grains_.data(field::position, 0), grains_.data(field::position, 1),
-                                         grains_.data(field::position, 2)};
-    std::string message;
-    for (const dem::PlaneWall& wall : setup_.walls)
-        for (std::size_t i = 0; i < grains_.size() && message.empty(); ++i)
-            if (!(wall.distance({x[0][i], x[1][i], x[2][i]}) > 0) &&
-                !setup_.held[grains_.data(field::body)[i]])
-                message = fmt::format(
-                    "step {}, time {} s: grain {} at ({:.6g}, {:.6g}, {:.6g}) m is behind wall '{}'", step_,
-                    time_, grains_.data(field::id)[i], x[0][i], x[1][i], x[2][i], wall.name);
-    comm_.all_agree(1, message);
-}
-
 std::uint64_t GrainSimulation::bytes_of_lists() const {
     std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    for (const dem::ContactList* list : {&pairs_, &at_walls_}) bytes += list->bytes();
+    bytes += pairs_.bytes() + at_walls_.bytes();
     for (const std::vector<double>* values :
          {&responses_.acceleration, &responses_.angular, &responses_.start[0], &responses_.start[1],
           &responses_.start[2]})
@@ -269,7 +271,7 @@ void GrainSimulation::reset_counters() {
 
 GrainTotals GrainSimulation::totals() const {
     enum Sum { mass, kinetic, rotational, potential, px, py, pz, sum_count };
-    std::vector<ExactSum> sums(sum_count);
+    std::vector<ExactSum> sums(sum_count + 3 * setup_.walls.size());
     double greatest_speed2 = 0;
     const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
     const std::uint8_t* body = grains_.data(field::body);
@@ -305,18 +307,19 @@ GrainTotals GrainSimulation::totals() const {
         }
         greatest[1] = std::max(greatest[1], (r[i] + r[j] - std::sqrt(distance2)) / std::min(r[i], r[j]));
     }
-    for (std::size_t k = 0; k < at_walls_.touching_count; ++k) {
-        const std::uint32_t i = at_walls_.first[at_walls_.touching[k]];
-        const dem::Vector3<> x{grains_.data(field::position, 0)[i], grains_.data(field::position, 1)[i],
-                               grains_.data(field::position, 2)[i]};
-        const double overlap = r[i] - setup_.walls[at_walls_.second[at_walls_.touching[k]]].distance(x);
-        greatest[1] = std::max(greatest[1], overlap / r[i]);
+    for (const dem::WallTouch& touch : at_walls_.touches()) {
+        greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
+        const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
+        for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
     }
-    counts[1] = at_walls_.touching_count;
+    counts[1] = at_walls_.touches().size();
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(greatest));
     comm_.all_sum(std::span<std::uint64_t>(counts));
     const auto mobile = static_cast<double>(std::max<std::uint64_t>(counts[2], 1));
+    std::vector<std::array<double, 3>> wall_forces(setup_.walls.size());
+    for (std::size_t w = 0; w < wall_forces.size(); ++w)
+        for (std::size_t a = 0; a < 3; ++a) wall_forces[w][a] = sums[sum_count + 3 * w + a].value();
     return {.mass = sums[mass].value(),
             .kinetic_energy = sums[kinetic].value(),
             .rotational_energy = sums[rotational].value(),
@@ -327,6 +330,7 @@ GrainTotals GrainSimulation::totals() const {
             .grains = total_grains(),
             .contacts = counts[0],
             .wall_contacts = counts[1],
+            .wall_forces = wall_forces,
             .coordination = 2 * static_cast<double>(counts[0]) / mobile};
 }
 

@@ -12,6 +12,7 @@
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
+#include "physics/dem/wall_contacts.hpp"
 #include "src/phases.hpp"
 
 namespace talus {
@@ -22,7 +23,7 @@ struct GrainSetup {
     dem::AnyLawTable laws;               ///< of all pairs of materials
     std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
     std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
-    std::vector<dem::PlaneWall> walls;
+    std::vector<dem::Wall> walls;
     dem::Vector3<> gravity;  ///< [m s-2]
     double time_step = 0;    ///< the same throughout [s]
     double skin = 0;         ///< gap up to which pairs are listed [m]; no result depends on it
@@ -38,6 +39,8 @@ struct GrainTotals {
     double greatest_speed = 0;
     double greatest_overlap = 0;  ///< over the smaller radius [1]
     std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
+    std::vector<std::array<double, 3>>
+        wall_forces;          ///< of the grains on each wall at the last evaluation [N]
     double coordination = 0;  ///< contacts with grains a grain that is not held [1]
 };
 
@@ -86,15 +89,16 @@ class GrainSimulation {
     GrainTotals totals() const;
 
   private:
-    void arrange(std::vector<dem::ContactRecord> records);
+    void arrange(std::vector<dem::ContactRecord> records, double time);
     std::vector<dem::ContactRecord> records_of_contacts() const;
     std::vector<dem::ContactRecord> records_below(std::size_t end) const;
     void describe_grains();
-    void list_contacts(const std::vector<dem::ContactRecord>& records);
+    void list_contacts(const std::vector<dem::ContactRecord>& records, double time);
     void evaluate(double time_step);
     void finish(double kick_step);
+    std::vector<dem::WallPose> poses_at(double time) const;
+    bool walls_move() const;
     void refuse_overload(const dem::Overload& overload, bool at_wall);
-    void check_walls() const;
     double listed_gap() const { return reach_ + setup_.skin; }
 
     const Communicator& comm_;
@@ -104,7 +108,9 @@ class GrainSimulation {
     Decomposition decomposition_;
     std::unique_ptr<CellGrid> grid_;
     double largest_radius_ = 0, reach_ = 0;
-    dem::ContactList pairs_, at_walls_;
+    dem::ContactList pairs_;
+    dem::WallContacts at_walls_;
+    std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
     dem::GrainRows rows_;
     dem::Responses responses_;
     std::vector<dem::ForceSum> sums_;

@@ -77,7 +77,7 @@ class PairLoop {
             const std::size_t wrong = contacts(list_.touching.data() + k, count);
             if (wrong < count && !overload.found) {
                 const std::uint32_t p = list_.touching[k + wrong];
-                overload = {true, list_.first[p], list_.second[p]};
+                overload = {true, list_.first[p], list_.second[p], false};
             }
         }
         return overload;

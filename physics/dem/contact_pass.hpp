@@ -6,7 +6,6 @@
 #include "physics/dem/force_sum.hpp"
 #include "physics/dem/grain_rows.hpp"
 #include "physics/dem/law_table.hpp"
-#include "physics/dem/plane_wall.hpp"
 
 namespace talus::dem {
 
@@ -25,7 +24,8 @@ struct Evaluation {
 /// A contact whose force is not finite or beyond what its grains could bear pressed flat.
 struct Overload {
     bool found = false;
-    std::uint32_t first = 0, second = 0;  ///< as in the list
+    std::uint32_t first = 0, second = 0;  ///< grains as stored, or a grain and a wall
+    bool behind = false;                  ///< the grain's centre is behind the wall's surface
 };
 
 /// Greatest gap across which any pair of grains up to a radius may act [m].
@@ -35,9 +35,5 @@ double greatest_reach(const AnyLawTable& laws, double largest_radius);
 /// with a copy is computed by both ranks, with the same bits.
 Overload evaluate_pairs(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
                         ContactList& list);
-
-/// The same for grains at walls, of which `list.second` is the index.
-Overload evaluate_walls(const Evaluation& evaluation, const AnyLawTable& laws,
-                        std::span<const PlaneWall> walls, ContactList& list);
 
 }  // namespace talus::dem

@@ -149,7 +149,7 @@ std::vector<ContactRecord> read_contacts(const Communicator& comm, const Particl
     for (const ContactRecord& row : rows) {
         const int first = holder(row.first), second = holder(row.second);
         parcels[first].push_back(row);
-        if (row.second >> 63 == 0 && second != first) parcels[second].push_back(row);
+        if (!is_wall_key(row.second) && second != first) parcels[second].push_back(row);
     }
     std::vector<ContactRecord> records;
     exchange(comm, parcels, records);

@@ -12,12 +12,15 @@ namespace talus::dem {
 /// Most values that a contact law remembers.
 inline constexpr std::size_t most_history = 7;
 
-/// Names a wall where a second grain would be named.
-constexpr std::uint64_t wall_key(std::uint32_t wall) { return std::uint64_t{1} << 63 | wall; }
+/// Names a place of a wall where a second grain would be named.
+constexpr std::uint64_t wall_key(std::uint32_t wall, std::uint32_t place) {
+    return std::uint64_t{1} << 63 | std::uint64_t{wall} << 32 | place;
+}
+constexpr bool is_wall_key(std::uint64_t key) { return key >> 63 != 0; }
 
 /// A contact and what its law remembers, independent of where its grains are stored.
 struct ContactRecord {
-    std::uint64_t first, second;  ///< ids in order, or a grain's and wall_key()
+    std::uint64_t first, second;  ///< ids in order, or a grain's and a wall_key()
     std::array<double, most_history> history;
 };
 

@@ -29,18 +29,18 @@ int check_grain_scene(const Communicator& comm, const Scene& scene) {
     fmt::print("{}\n\n{}\n", setup.title, scene.resolved());
     for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
         const GrainBody& body = setup.bodies[b];
-        fmt::print("grains {}: {} of {}, radius {:.4g} to {:.4g} m{}\n", body.name, counts[b], body.material.name,
-                   body.least_radius, body.greatest_radius, body.held ? ", held" : "");
+        fmt::print("grains {}: {} of {}, radius {:.4g} to {:.4g} m{}\n", body.name, counts[b],
+                   body.material.name, body.least_radius, body.greatest_radius, body.held ? ", held" : "");
     }
-    for (const dem::PlaneWall& wall : setup.simulation.walls) fmt::print("wall {}: a plane\n", wall.name);
     for (const std::string& warning : evolution.warnings()) fmt::print("note: {}\n", warning);
     const auto total = static_cast<double>(evolution.total_particles());
     fmt::print("\ngrains: {} on {} ranks, {} bytes each in fields, {:.0f} in pairs, contacts and forces\n",
                evolution.total_particles(), comm.size(), evolution.particles().bytes_per_particle(),
                static_cast<double>(lists) / total);
     const double all_steps = setup.output.end_time / setup.simulation.time_step;
-    fmt::print("time step: {:.4g} s, at most {:.4g} s ({}); {:.0f} steps to {} s\n", setup.simulation.time_step,
-               setup.greatest_time_step, setup.time_step_limit, std::ceil(all_steps), setup.output.end_time);
+    fmt::print("time step: {:.4g} s, at most {:.4g} s ({}); {:.0f} steps to {} s\n",
+               setup.simulation.time_step, setup.greatest_time_step, setup.time_step_limit,
+               std::ceil(all_steps), setup.output.end_time);
     fmt::print("estimated cost: {:.3g} s a step on {} ranks, {:.3g} minutes in all\n", seconds, comm.size(),
                seconds * all_steps / 60);
     return exit_done;

@@ -44,7 +44,8 @@ class Evolution {
     /// Makes the particles of a new run.
     virtual void create() = 0;
     /// Reads those of the checkpoint that `what` means (see find_checkpoint()).
-    virtual ReadCheckpoint read(const std::filesystem::path& what, const std::filesystem::path& output_folder) = 0;
+    virtual ReadCheckpoint read(const std::filesystem::path& what,
+                                const std::filesystem::path& output_folder) = 0;
     /// First evaluation after create().
     virtual void start() = 0;
     /// Goes on from the state that was read.
@@ -79,8 +80,8 @@ class Evolution {
     virtual std::string analyse(const std::filesystem::path& folder, const RunState& state) const = 0;
 };
 
-/// Reads a scene and checks what can be wrong with it until `end_time` (0: the scene's). Throws SceneError (on
-/// every rank) with all faults. `comm` and `scene` must outlive the result. Collective.
+/// Reads a scene and checks what can be wrong with it until `end_time` (0: the scene's). Throws SceneError
+/// (on every rank) with all faults. `comm` and `scene` must outlive the result. Collective.
 std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene, double end_time);
 
 }  // namespace talus

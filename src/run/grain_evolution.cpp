@@ -22,9 +22,10 @@ GrainEvolution::GrainEvolution(const Communicator& comm, const Scene& scene)
 std::vector<std::string> GrainEvolution::warnings() const {
     constexpr double worth_noting = 0.001;
     if (!(first_overlap_ > worth_noting)) return {};
-    return {fmt::format("grains overlap at the start, by up to {:.3g} of the smaller radius: they will push each other "
-                        "apart",
-                        first_overlap_)};
+    return {fmt::format(
+        "grains overlap at the start, by up to {:.3g} of the smaller radius: they will push each other "
+        "apart",
+        first_overlap_)};
 }
 
 void GrainEvolution::create() { simulation_.emplace(comm_, setup_.simulation, make_grains(comm_, setup_)); }
@@ -34,13 +35,15 @@ void GrainEvolution::start() {
     simulation_->start();
     first_overlap_ = simulation_->totals().greatest_overlap;
     if (first_overlap_ > most)
-        scene_.root().error("grains", fmt::format("grains overlap at the start, by up to {:.3g} of the smaller radius; "
-                                                  "allowed: {}",
-                                                  first_overlap_, most));
+        scene_.root().error("grains",
+                            fmt::format("grains overlap at the start, by up to {:.3g} of the smaller radius; "
+                                        "allowed: {}",
+                                        first_overlap_, most));
     scene_.finish();
 }
 
-ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what, const std::filesystem::path& output_folder) {
+ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
+                                    const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
     ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
     ParticleSet grains = empty_grains();
@@ -81,34 +84,50 @@ std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
 }
 
 std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
-    return {{"time", "s"},
-            {"mass", "kg"},
-            {"kinetic_energy", "J"},
-            {"rotational_energy", "J"},
-            {"potential_energy", "J"},
-            {"momentum_x", "kg m s-1"},
-            {"momentum_y", "kg m s-1"},
-            {"momentum_z", "kg m s-1"},
-            {"greatest_speed", "m s-1"},
-            {"greatest_overlap", "1"},
-            {"contacts", "1"},
-            {"wall_contacts", "1"},
-            {"coordination", "1"}};
+    std::vector<CsvColumn> columns = {{"time", "s"},
+                                      {"mass", "kg"},
+                                      {"kinetic_energy", "J"},
+                                      {"rotational_energy", "J"},
+                                      {"potential_energy", "J"},
+                                      {"momentum_x", "kg m s-1"},
+                                      {"momentum_y", "kg m s-1"},
+                                      {"momentum_z", "kg m s-1"},
+                                      {"greatest_speed", "m s-1"},
+                                      {"greatest_overlap", "1"},
+                                      {"contacts", "1"},
+                                      {"wall_contacts", "1"},
+                                      {"coordination", "1"}};
+    for (const dem::Wall& wall : setup_.simulation.walls)
+        for (const char axis : {'x', 'y', 'z'})
+            columns.push_back({fmt::format("force_{}_{}", wall.name, axis), "N"});
+    return columns;
 }
 
 Diagnostics GrainEvolution::diagnostics() const {
     const GrainTotals t = simulation_->totals();
-    return {{simulation_->time(), t.mass, t.kinetic_energy, t.rotational_energy, t.potential_energy, t.momentum[0],
-             t.momentum[1], t.momentum[2], t.greatest_speed, t.greatest_overlap, static_cast<double>(t.contacts),
-             static_cast<double>(t.wall_contacts), t.coordination},
-            0};
+    std::vector<double> row = {simulation_->time(),
+                               t.mass,
+                               t.kinetic_energy,
+                               t.rotational_energy,
+                               t.potential_energy,
+                               t.momentum[0],
+                               t.momentum[1],
+                               t.momentum[2],
+                               t.greatest_speed,
+                               t.greatest_overlap,
+                               static_cast<double>(t.contacts),
+                               static_cast<double>(t.wall_contacts),
+                               t.coordination};
+    for (const auto& force : t.wall_forces) row.insert(row.end(), force.begin(), force.end());
+    return {row, 0};
 }
 
 std::string GrainEvolution::summary() const {
     const GrainTotals t = simulation_->totals();
-    return fmt::format("{} contacts of grains, {} at walls, {:.3f} grains touch each that is not held; greatest overlap "
-                       "{:.2g} of the radius; pairs listed {} times",
-                       t.contacts, t.wall_contacts, t.coordination, t.greatest_overlap, simulation_->list_count());
+    return fmt::format(
+        "{} contacts of grains, {} at walls, {:.3f} grains touch each that is not held; greatest overlap "
+        "{:.2g} of the radius; pairs listed {} times",
+        t.contacts, t.wall_contacts, t.coordination, t.greatest_overlap, simulation_->list_count());
 }
 
 std::string GrainEvolution::performance() const {

@@ -16,7 +16,8 @@ class GrainEvolution : public Evolution {
     const OutputPlan& output() const override { return setup_.output; }
     std::vector<std::string> warnings() const override;
     void create() override;
-    ReadCheckpoint read(const std::filesystem::path& what, const std::filesystem::path& output_folder) override;
+    ReadCheckpoint read(const std::filesystem::path& what,
+                        const std::filesystem::path& output_folder) override;
     void start() override;
     void resume(const RunState& state) override;
     void step() override { simulation_->step(); }

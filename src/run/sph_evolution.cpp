@@ -20,7 +20,8 @@ void SphEvolution::create() {
     check_box(scene_, *simulation_);
 }
 
-ReadCheckpoint SphEvolution::read(const std::filesystem::path& what, const std::filesystem::path& output_folder) {
+ReadCheckpoint SphEvolution::read(const std::filesystem::path& what,
+                                  const std::filesystem::path& output_folder) {
     Restart restart = read_restart(comm_, what, output_folder, setup_);
     simulation_.emplace(comm_, setup_.simulation, std::move(restart.particles));
     check_box(scene_, *simulation_);
@@ -75,12 +76,24 @@ std::vector<CsvColumn> SphEvolution::diagnostics_columns() const {
 
 Diagnostics SphEvolution::diagnostics() const {
     const Totals t = simulation_->totals();
-    std::vector<double> row = {simulation_->time(),   simulation_->time_step(), t.mass,
-                               t.kinetic_energy,      t.internal_energy,        t.total_energy(),
-                               t.momentum[0],         t.momentum[1],            t.momentum[2],
-                               t.angular_momentum[0], t.angular_momentum[1],    t.angular_momentum[2],
-                               t.greatest_speed,      t.least_density,          t.greatest_density,
-                               t.least_pressure,      t.greatest_pressure,      t.mean_damage};
+    std::vector<double> row = {simulation_->time(),
+                               simulation_->time_step(),
+                               t.mass,
+                               t.kinetic_energy,
+                               t.internal_energy,
+                               t.total_energy(),
+                               t.momentum[0],
+                               t.momentum[1],
+                               t.momentum[2],
+                               t.angular_momentum[0],
+                               t.angular_momentum[1],
+                               t.angular_momentum[2],
+                               t.greatest_speed,
+                               t.least_density,
+                               t.greatest_density,
+                               t.least_pressure,
+                               t.greatest_pressure,
+                               t.mean_damage};
     if (simulation_->gravity_counts()) row.insert(row.end(), {t.potential_energy, t.gravity_drift});
     return {row, t.total_energy()};
 }
@@ -92,8 +105,9 @@ std::string SphEvolution::summary() const {
     const double drift = simulation_->totals().gravity_drift;
     const double updates =
         static_cast<double>(step_count() - counted_from_) * static_cast<double>(total_particles());
-    return fmt::format("gravity: {:.1f} interactions per particle and step; its forces add up to {:.1e} of their sizes",
-                       updates > 0 ? interactions / updates : 0.0, drift);
+    return fmt::format(
+        "gravity: {:.1f} interactions per particle and step; its forces add up to {:.1e} of their sizes",
+        updates > 0 ? interactions / updates : 0.0, drift);
 }
 
 std::string SphEvolution::performance() const {

@@ -15,9 +15,12 @@ class SphEvolution : public Evolution {
     const OutputPlan& output() const override { return setup_.output; }
     std::vector<std::string> warnings() const override;
     void create() override;
-    ReadCheckpoint read(const std::filesystem::path& what, const std::filesystem::path& output_folder) override;
+    ReadCheckpoint read(const std::filesystem::path& what,
+                        const std::filesystem::path& output_folder) override;
     void start() override { simulation_->start(); }
-    void resume(const RunState& state) override { simulation_->resume(state.time, state.time_step, state.step); }
+    void resume(const RunState& state) override {
+        simulation_->resume(state.time, state.time_step, state.step);
+    }
     void step() override { simulation_->step(); }
     double time() const override { return simulation_->time(); }
     double time_step() const override { return simulation_->time_step(); }

@@ -66,8 +66,9 @@ void GrainLawReader::read_pairs() {
         std::array<std::size_t, 2> pair{};
         const std::vector<std::string> names = table.texts("materials", 2);
         for (std::size_t side = 0; side < std::min<std::size_t>(names.size(), 2); ++side) {
-            const auto found = std::find_if(materials_.begin(), materials_.end(),
-                                            [&](const auto& material) { return material.name == names[side]; });
+            const auto found = std::find_if(materials_.begin(), materials_.end(), [&](const auto& material) {
+                return material.name == names[side];
+            });
             if (found == materials_.end())
                 table.error("materials", fmt::format("no grains and no wall are of '{}'", names[side]));
             else
@@ -95,17 +96,18 @@ GrainTimeStep GrainLawReader::time_step(const std::vector<GrainBody>& bodies) co
         if (hertz_) {
             const double rayleigh =
                 dem::rayleigh_time(r, material.density, dem::shear_modulus(material), material.poisson_ratio);
-            found = {greatest_share * rayleigh, usual_share * rayleigh,
-                     fmt::format("{} of the time in which a Rayleigh wave crosses a grain of {:.4g} m of '{}'",
-                                 greatest_share, r, body.name)};
+            found = {
+                greatest_share * rayleigh, usual_share * rayleigh,
+                fmt::format("{} of the time in which a Rayleigh wave crosses a grain of {:.4g} m of '{}'",
+                            greatest_share, r, body.name)};
         } else {
             const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * material.density;
             const double ratio = 0.5 * dem::linear_damping(material.restitution, end_);
             const double lattice =
                 dem::packed_lattice_limit(mass, stiffness_, stiffness_ratio_ * stiffness_, ratio);
             found = {lattice, 0.2 * lattice,
-                     fmt::format("the limit of densely packed grains of {:.4g} m of '{}' that move and turn", r,
-                                 body.name)};
+                     fmt::format("the limit of densely packed grains of {:.4g} m of '{}' that move and turn",
+                                 r, body.name)};
         }
         if (found.greatest < limit.greatest) limit = found;
     }
@@ -124,7 +126,9 @@ dem::AnyLawTable table_of(std::size_t materials, Make&& make) {
 
 dem::AnyLawTable GrainLawReader::table() const {
     const dem::MaterialPairs& pairs = *pairs_;
-    const auto elasticity = [&](std::size_t a, std::size_t b) { return dem::hertz_mindlin(pairs(a, b), end_); };
+    const auto elasticity = [&](std::size_t a, std::size_t b) {
+        return dem::hertz_mindlin(pairs(a, b), end_);
+    };
     const auto spring = [&](std::size_t a, std::size_t b) {
         return dem::linear_spring(pairs(a, b), stiffness_, stiffness_ratio_, end_);
     };
@@ -134,7 +138,8 @@ dem::AnyLawTable GrainLawReader::table() const {
     const std::size_t n = materials_.size();
     if (hertz_ && rolling_)
         return table_of<dem::RollingHertzLaw>(n, [&](std::size_t a, std::size_t b) {
-            return dem::RollingHertzLaw<double>{elasticity(a, b), {pairs(a, b).friction}, resistance(a, b), {}, {}};
+            return dem::RollingHertzLaw<double>{
+                elasticity(a, b), {pairs(a, b).friction}, resistance(a, b), {}, {}};
         });
     if (hertz_)
         return table_of<dem::HertzLaw>(n, [&](std::size_t a, std::size_t b) {
@@ -142,7 +147,8 @@ dem::AnyLawTable GrainLawReader::table() const {
         });
     if (rolling_)
         return table_of<dem::RollingLinearLaw>(n, [&](std::size_t a, std::size_t b) {
-            return dem::RollingLinearLaw<double>{spring(a, b), {pairs(a, b).friction}, resistance(a, b), {}, {}};
+            return dem::RollingLinearLaw<double>{
+                spring(a, b), {pairs(a, b).friction}, resistance(a, b), {}, {}};
         });
     return table_of<dem::LinearLaw>(n, [&](std::size_t a, std::size_t b) {
         return dem::LinearLaw<double>{spring(a, b), {pairs(a, b).friction}, {}, {}, {}};

@@ -19,8 +19,8 @@ struct GrainTimeStep {
     std::string reason;  ///< of the greatest
 };
 
-/// Reads the law of [dem], the materials that grains and walls name and the pairs of [[contact]]. Faults are recorded
-/// in the scene.
+/// Reads the law of [dem], the materials that grains and walls name and the pairs of [[contact]]. Faults are
+/// recorded in the scene.
 class GrainLawReader {
   public:
     explicit GrainLawReader(const Section& root);

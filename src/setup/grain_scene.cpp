@@ -12,6 +12,7 @@
 #include "src/setup/material_reader.hpp"
 #include "src/setup/run_reader.hpp"
 #include "src/setup/shape_reader.hpp"
+#include "src/setup/wall_reader.hpp"
 
 namespace talus {
 
@@ -21,7 +22,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Range positive{0, infinity, true};
 
 /// Rows "x,y,z,radius[,vx,vy,vz[,wx,wy,wz]]" in SI units; lines beginning with # are not read.
-std::vector<std::array<double, 10>> read_list(const Communicator& comm, const Scene& scene, const Section& table) {
+std::vector<std::array<double, 10>> read_list(const Communicator& comm, const Scene& scene,
+                                              const Section& table) {
     const std::filesystem::path file =
         std::filesystem::absolute(scene.file()).parent_path() / table.text("file");
     const std::string text = read_shared_text(comm, file);
@@ -78,8 +80,9 @@ void read_packing(const Section& table, const BodyContext& context, GrainBody& b
     body.angular_velocity = origin_default(table, "angular_velocity", "rad/s", 3);
 }
 
-std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene, const Box& box, GrainLawReader& laws,
-                                   std::vector<std::uint8_t>& materials, std::uint64_t seed) {
+std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene, const Box& box,
+                                   GrainLawReader& laws, std::vector<std::uint8_t>& materials,
+                                   std::uint64_t seed) {
     std::vector<GrainBody> bodies;
     const std::vector<Section> tables = scene.root().sections("grains");
     if (tables.size() > 255) scene.root().error("grains", "more than 255 bodies of grains");
@@ -113,25 +116,6 @@ std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene,
     return bodies;
 }
 
-std::vector<dem::PlaneWall> read_walls(const Scene& scene, const Box& box, GrainLawReader& laws) {
-    std::vector<dem::PlaneWall> walls;
-    for (const Section& table : scene.root().sections("wall")) {
-        table.choice("kind", {"plane"}, "plane");
-        const Point point = read_point(table, "point", "m", 3), normal = read_point(table, "normal", "1", 3);
-        const double length = norm(normal);
-        if (!(length > 0)) table.error("normal", "must have a length above 0");
-        for (std::size_t a = 0; a < 3; ++a)
-            if (box.boundary[a] == Boundary::periodic && normal[a] != 0)
-                table.error("normal", fmt::format("must be 0 along {}, where the box is periodic", "xyz"[a]));
-        const Point unit = times(length > 0 ? 1 / length : 1, normal);
-        walls.push_back({table.text("name", table.path()),
-                         {point[0], point[1], point[2]},
-                         {unit[0], unit[1], unit[2]},
-                         laws.material(table)});
-    }
-    return walls;
-}
-
 /// Grains that wrap around the box must not meet the same partner, or themselves, on both sides.
 void check_box(const Section& table, const Box& box, double reach) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -139,9 +123,10 @@ void check_box(const Section& table, const Box& box, double reach) {
         if (boundary == Boundary::reflecting)
             table.error("boundaries", "grains know open and periodic boundaries; a wall is a [[wall]]");
         if (boundary == Boundary::periodic && box.length(axis) < 2 * reach)
-            table.error("upper", fmt::format("the box is {} m long along {}, where it is periodic; allowed: at least "
-                                             "{:.4g} m, two diameters of the largest grain with its skin",
-                                             box.length(axis), "xyz"[axis], 2 * reach));
+            table.error("upper",
+                        fmt::format("the box is {} m long along {}, where it is periodic; allowed: at least "
+                                    "{:.4g} m, two diameters of the largest grain with its skin",
+                                    box.length(axis), "xyz"[axis], 2 * reach));
     }
 }
 
@@ -158,7 +143,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     GrainLawReader laws(root);
     std::vector<std::uint8_t> material, held;
     std::vector<GrainBody> bodies = read_bodies(comm, scene, box, laws, material, seed);
-    std::vector<dem::PlaneWall> walls = read_walls(scene, box, laws);
+    std::vector<dem::Wall> walls = read_walls(scene, box, laws);
     double greatest = 0;
     for (const GrainBody& body : bodies) {
         held.push_back(body.held ? 1 : 0);
@@ -175,8 +160,8 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     const GrainTimeStep limit = laws.time_step(bodies);
     const double time_step = table.number("time_step", "s", limit.usual, positive);
     if (time_step > limit.greatest)
-        table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}", limit.greatest,
-                                             limit.reason));
+        table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}",
+                                             limit.greatest, limit.reason));
     scene.finish();
     return {.title = title,
             .simulation = {.box = box,
@@ -227,7 +212,8 @@ std::vector<Row> packed(const GrainBody& body, const RandomStream& random, std::
 
 ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
     ParticleSet grains = empty_grains();
-    const auto ranks = static_cast<std::uint64_t>(comm.size()), rank = static_cast<std::uint64_t>(comm.rank());
+    const auto ranks = static_cast<std::uint64_t>(comm.size()),
+               rank = static_cast<std::uint64_t>(comm.rank());
     std::uint64_t first_id = 0;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         const GrainBody& body = scene.bodies[b];
