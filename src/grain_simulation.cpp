@@ -126,8 +126,8 @@ void GrainSimulation::finish(double kick_step) {
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
-    const bool walls_moved = walls_move() && at_walls_.displacement(rows_, poses_at(time_ + setup_.time_step),
-                                                                    listed_gap()) > allowed;
+    const bool walls_moved =
+        walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
     std::array<int, 2> flags{walls_moved || moved2 > allowed * allowed, !fault_.empty()};
     phases_.enter(Phase::wait);
     comm_.all_max(std::span<int>(flags));

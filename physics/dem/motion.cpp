@@ -33,7 +33,7 @@ void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) 
         double* x = grains.data(field::position, axis);
         const double *v = grains.data(field::velocity, axis), *a = grains.data(field::acceleration, axis);
         for (std::size_t i = 0; i < grains.size(); ++i)
-            x[i] = places(axis, x[i] + time_step * (v[i] + 0.5 * time_step * a[i]));
+            x[i] += places(axis, time_step * (v[i] + 0.5 * time_step * a[i]));
     }
 }
 

@@ -17,7 +17,8 @@ namespace talus::dem {
 class PeriodicPlaces {
   public:
     explicit PeriodicPlaces(const Box& box);
-    /// Nearest place.
+    /// Nearest place; a displacement is brought to one before it is added, for the sum would be rounded
+    /// twice.
     double operator()(int axis, double coordinate) const {
         const double shift = shifts_[static_cast<std::size_t>(axis)];
         return (coordinate + shift) - shift;

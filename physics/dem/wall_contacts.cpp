@@ -7,8 +7,8 @@
 
 namespace talus::dem {
 
-void WallContacts::list(const ParticleSet& grains, std::span<const Wall> walls, std::span<const WallPose> poses,
-                        const PairRule& rule) {
+void WallContacts::list(const ParticleSet& grains, std::span<const Wall> walls,
+                        std::span<const WallPose> poses, const PairRule& rule) {
     const double* radius = grains.data(field::radius);
     const std::uint8_t* body = grains.data(field::body);
     const std::array<const double*, 3> x{grains.data(field::position, 0), grains.data(field::position, 1),
@@ -16,13 +16,18 @@ void WallContacts::list(const ParticleSet& grains, std::span<const Wall> walls, 
     near_.clear();
     touches_.clear();
     listed_poses_.assign(poses.begin(), poses.end());
+    farthest_.assign(walls.size(), 0.0);
     for (std::uint32_t i = 0; i < grains.size(); ++i) {
         if (rule.held[body[i]]) continue;
-        for (std::uint32_t w = 0; w < walls.size(); ++w)
+        for (std::uint32_t w = 0; w < walls.size(); ++w) {
+            const Vector3<> from_centre =
+                Vector3<>{x[0][i], x[1][i], x[2][i]} - poses[w].centre - poses[w].shift;
+            farthest_[w] = std::max(farthest_[w], norm(from_centre) + radius[i] + 2 * rule.margin);
             if (may_touch(walls[w], poses[w], {x[0][i], x[1][i], x[2][i]}, radius[i], rule.margin))
                 near_.push_back({i, w,
                                  static_cast<std::uint32_t>(rule.material[body[i]] * rule.materials +
                                                             walls[w].material)});
+        }
     }
 }
 
@@ -46,7 +51,8 @@ void WallContacts::restore(std::span<const ContactRecord> records, const Particl
         const ContactRecord first{id[near.grain], wall_key(near.wall, 0), {}};
         for (auto at = std::lower_bound(known.begin(), known.end(), first, before);
              at != known.end() && at->first == first.first && at->second < wall_key(near.wall + 1, 0); ++at)
-            touches_.push_back({near.grain, near.wall, static_cast<std::uint32_t>(at->second), 0, {}, at->history});
+            touches_.push_back(
+                {near.grain, near.wall, static_cast<std::uint32_t>(at->second), 0, {}, at->history});
         near.end = static_cast<std::uint32_t>(touches_.size());
     }
 }
@@ -77,8 +83,8 @@ ContactLoad<double> load_of(const Law& law, const ContactKinematics<double>& k,
 
 }  // namespace
 
-Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable& laws, std::span<const Wall> walls,
-                                std::span<const WallPose> poses) {
+Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable& laws,
+                                std::span<const Wall> walls, std::span<const WallPose> poses) {
     Overload overload;
     std::swap(touches_, before_);
     touches_.clear();
@@ -118,12 +124,12 @@ Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable&
     return overload;
 }
 
-double WallContacts::displacement(const GrainRows& rows, std::span<const WallPose> poses, double margin) const {
+double WallContacts::displacement(std::span<const WallPose> poses) const {
     double greatest = 0;
-    for (const Near& near : near_) {
-        const PlacedGrain<double> g = placed_grain(rows[near.grain]);
-        greatest = std::max(greatest, greatest_displacement(listed_poses_[near.wall], poses[near.wall], g.position,
-                                                            g.grain.radius + 2 * margin));
+    for (std::size_t w = 0; w < poses.size(); ++w) {
+        const WallPose& from = listed_poses_[w];
+        greatest =
+            std::max(greatest, greatest_displacement(from, poses[w], from.centre + from.shift, farthest_[w]));
     }
     return greatest;
 }

@@ -35,14 +35,15 @@ class WallContacts {
     Overload evaluate(const Evaluation& evaluation, const AnyLawTable& laws, std::span<const Wall> walls,
                       std::span<const WallPose> poses);
 
-    /// The walls' greatest displacement since list(), where listed grains are, is not greater than this once they are
-    /// at `poses` [m].
-    double displacement(const GrainRows& rows, std::span<const WallPose> poses, double margin) const;
+    /// The walls' greatest displacement since list(), wherever a grain may be, is not greater than this once
+    /// they are at `poses` [m].
+    double displacement(std::span<const WallPose> poses) const;
 
     /// Contacts of the last evaluation.
     std::span<const WallTouch> touches() const { return touches_; }
     std::size_t bytes() const {
-        return near_.capacity() * sizeof(Near) + (touches_.capacity() + before_.capacity()) * sizeof(WallTouch);
+        return near_.capacity() * sizeof(Near) +
+               (touches_.capacity() + before_.capacity()) * sizeof(WallTouch);
     }
 
   private:
@@ -53,6 +54,8 @@ class WallContacts {
     std::vector<Near> near_;
     std::vector<WallTouch> touches_, before_;
     std::vector<WallPose> listed_poses_;
+    std::vector<double>
+        farthest_;  ///< grain from the centre of each wall's rotation, with its surroundings [m]
 };
 
 }  // namespace talus::dem

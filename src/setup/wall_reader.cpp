@@ -42,8 +42,10 @@ dem::WallShape read_corners(const Section& table) {
 }
 
 dem::WallShape read_revolved(const Section& table) {
-    const dem::Vector3<> origin = vector_of(origin_default(table, "origin", "m", 3)), axis = read_direction(table, "axis");
-    const std::vector<double> radii = table.numbers("radii", "m", 0), along = table.numbers("heights", "m", 0);
+    const dem::Vector3<> origin = vector_of(origin_default(table, "origin", "m", 3)),
+                         axis = read_direction(table, "axis");
+    const std::vector<double> radii = table.numbers("radii", "m", 0),
+                              along = table.numbers("heights", "m", 0);
     std::vector<dem::RevolvedShape::ProfilePoint> profile;
     bool good = radii.size() == along.size() && radii.size() >= 2;
     for (std::size_t k = 0; good && k < radii.size(); ++k) {
@@ -52,7 +54,9 @@ dem::WallShape read_revolved(const Section& table) {
     }
     const double smooth = table.number("smooth_angle", "rad", 0.5, {0, 1.5});
     if (good) return dem::RevolvedShape(origin, axis, profile, smooth);
-    table.error("radii", "radii and heights must be as many, two at least, no radius below 0, no point twice in sequence");
+    table.error(
+        "radii",
+        "radii and heights must be as many, two at least, no radius below 0, no point twice in sequence");
     return dem::RevolvedShape(origin, axis, {{1, 0}, {1, 1}}, smooth);
 }
 

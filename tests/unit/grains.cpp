@@ -266,7 +266,8 @@ TEST(Grains, ForceBeyondAllBoundsStopsTheRun) {
         run.step();
         FAIL() << "no fault was found";
     } catch (const AgreedError& error) {
-        EXPECT_NE(std::string(error.what()).find("between grain 0 and grain 1"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("between grain 0 at (0, 0, 0) m and grain 1"),
+                  std::string::npos)
             << error.what();
     }
 }
