@@ -11,7 +11,7 @@
 namespace talus::test {
 namespace {
 
-constexpr int steps = 400;
+constexpr int steps = 120;
 
 const dem::GrainMaterial glass{.name = "glass",
                                .density = 2500,
@@ -117,7 +117,7 @@ TEST(GrainsSameBits, WhoeverOwnsWhat) {
 
 TEST(GrainsSameBits, AfterInterruption) {
     const Communicator world(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
-    for (const int stop : {1, 233}) {
+    for (const int stop : {1, 71}) {
         GrainSimulation first = prepared(world, {}, grain_set(world, cloud()));
         first.start();
         for (int k = 0; k < stop; ++k) first.step();
