@@ -11,8 +11,8 @@
 namespace talus {
 
 int check_grain_scene(const Communicator& comm, const Scene& scene) {
-    GrainEvolution evolution(comm, scene);
-    evolution.create();
+    GrainEvolution evolution(comm, scene, {});
+    evolution.create({});
     evolution.start();
     constexpr int steps = 5;
     const auto began = std::chrono::steady_clock::now();

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,14 @@ class Evolution {
 
     virtual const std::string& title() const = 0;
     virtual const OutputPlan& output() const = 0;
+    virtual double end_time() const = 0;  ///< [s]
     /// What a user should know before the first step.
     virtual std::vector<std::string> warnings() const = 0;
 
-    /// Makes the particles of a new run.
-    virtual void create() = 0;
+    /// Makes the particles of a new run; calls check_stop() now and then if that takes long.
+    virtual void create(const std::function<void()>& check_stop) = 0;
+    /// What create() did, in words.
+    virtual std::vector<std::string> preparations() const { return {}; }
     /// Reads those of the checkpoint that `what` means (see find_checkpoint()).
     virtual ReadCheckpoint read(const std::filesystem::path& what,
                                 const std::filesystem::path& output_folder) = 0;
@@ -64,8 +68,8 @@ class Evolution {
     virtual std::uint64_t pairs() const = 0;
     virtual void reset_counters() = 0;
 
-    /// Names of the bodies' materials, for the checkpoint.
-    virtual std::vector<std::string> materials() const = 0;
+    /// Adds to a checkpoint's state what it must know besides time and particles.
+    virtual void describe(RunState& state) const = 0;
     /// Calls write(sets) with all particle sets that a checkpoint holds.
     using WriteSets = std::function<void(const std::vector<const ParticleSet*>&)>;
     virtual void save(const WriteSets& write) = 0;
@@ -77,11 +81,14 @@ class Evolution {
     /// What else performance.json holds: `"key": value, ` for each, or nothing.
     virtual std::string performance() const = 0;
     /// Analyses the last state as the scene asks, writes to `folder` and returns what to log, or nothing.
-    virtual std::string analyse(const std::filesystem::path& folder, const RunState& state) const = 0;
+    virtual std::string analyse(const std::filesystem::path&, const RunState&) const { return {}; }
+    /// The same for what another model goes on from.
+    virtual std::string hand_over(const std::filesystem::path&, const RunState&) const { return {}; }
 };
 
-/// Reads a scene and checks what can be wrong with it until `end_time` (0: the scene's). Throws SceneError
+/// Reads a scene to run it until its own end or `until` [s]. Throws SceneError
 /// (on every rank) with all faults. `comm` and `scene` must outlive the result. Collective.
-std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene, double end_time);
+std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene,
+                                          std::optional<double> until);
 
 }  // namespace talus

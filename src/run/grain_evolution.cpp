@@ -11,13 +11,17 @@
 
 namespace talus {
 
-std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene, double end_time) {
-    if (is_grain_scene(scene)) return std::make_unique<GrainEvolution>(comm, scene);
-    return std::make_unique<SphEvolution>(comm, scene, end_time);
+std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene,
+                                          std::optional<double> until) {
+    if (is_grain_scene(scene)) return std::make_unique<GrainEvolution>(comm, scene, until);
+    return std::make_unique<SphEvolution>(comm, scene, until);
 }
 
-GrainEvolution::GrainEvolution(const Communicator& comm, const Scene& scene)
-    : comm_(comm), scene_(scene), setup_(read_grain_scene(comm, scene)) {}
+GrainEvolution::GrainEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until)
+    : comm_(comm),
+      scene_(scene),
+      setup_(read_grain_scene(comm, scene)),
+      end_time_(until.value_or(setup_.output.end_time)) {}
 
 std::vector<std::string> GrainEvolution::warnings() const {
     constexpr double worth_noting = 0.001;
@@ -28,7 +32,9 @@ std::vector<std::string> GrainEvolution::warnings() const {
         first_overlap_)};
 }
 
-void GrainEvolution::create() { simulation_.emplace(comm_, setup_.simulation, make_grains(comm_, setup_)); }
+void GrainEvolution::create(const std::function<void()>&) {
+    simulation_.emplace(comm_, setup_.simulation, make_grains(comm_, setup_));
+}
 
 void GrainEvolution::start() {
     constexpr double most = 0.2;  // of the smaller radius
@@ -74,6 +80,8 @@ void GrainEvolution::save(const WriteSets& write) {
     const ParticleSet contacts = simulation_->save();
     write({&simulation_->grains(), &contacts});
 }
+
+void GrainEvolution::describe(RunState& state) const { state.materials = materials(); }
 
 std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;

@@ -32,7 +32,7 @@ RunState run_state(const Evolution& evolution, const Scene& scene) {
     state.scene_text = scene.text();
     state.resolved_scene = scene.resolved();
     state.version = TALUS_VERSION;
-    state.materials = evolution.materials();
+    evolution.describe(state);
     return state;
 }
 
@@ -121,8 +121,11 @@ void Recorder::begin(Evolution& evolution, double end_time) {
             evolution.total_particles(), comm_.size(), evolution.particles().bytes_per_particle(),
             evolution.time_step(), folder_.string());
     }
-    if (comm_.is_root())
+    if (comm_.is_root()) {
+        if (is_new_)
+            for (const std::string& note : evolution.preparations()) files_->log->info("{}", note);
         for (const std::string& warning : evolution.warnings()) files_->log->warn("note: {}", warning);
+    }
     files_->diagnostics = std::make_unique<CsvWriter>(
         comm_, folder_ / "diagnostics.csv", evolution.diagnostics_columns(),
         is_new_ ? std::nullopt : std::optional<std::uint64_t>(evolution.step_count()));
@@ -183,6 +186,11 @@ void Recorder::finish(Evolution& evolution) {
     }
     write_analysis(evolution);
     print_summary(evolution);
+}
+
+void Recorder::hand_over(const Evolution& evolution) {
+    const std::string result = evolution.hand_over(folder_, run_state(evolution, scene_));
+    if (comm_.is_root() && !result.empty()) files_->log->info("{}", result);
 }
 
 std::string Recorder::after_failure(Evolution& evolution) {

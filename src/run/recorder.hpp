@@ -31,6 +31,9 @@ class Recorder {
     /// Writes the last state and what the scene wants to know of it; prints the table of time per phase.
     void finish(Evolution& evolution);
 
+    /// Writes what other models go on from, if the scene asks for it and the time has come.
+    void hand_over(const Evolution& evolution);
+
     /// After a failure of step(): keeps the state that failed in `folder`/failed for a look with `talus
     /// info`, and says where it is and where to go on from.
     std::string after_failure(Evolution& evolution);

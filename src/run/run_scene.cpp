@@ -20,15 +20,19 @@ bool finished(const Evolution& evolution, double end_time, const RunOptions& opt
 
 int run_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
-    const std::unique_ptr<Evolution> evolution = read_evolution(comm, scene, options.until.value_or(0));
-    const double end_time = options.until.value_or(evolution->output().end_time);
+    const std::unique_ptr<Evolution> evolution = read_evolution(comm, scene, options.until);
+    const double end_time = evolution->end_time();
     const std::filesystem::path folder = output_folder(scene, options);
     StopRequest stop(comm, folder, options.walltime);
 
     // The folder is touched only once it is known that the run can begin.
     std::optional<ReadCheckpoint> restart;
     if (options.restart.empty())
-        evolution->create();
+        evolution->create([&] {
+            if (const std::string why = stop.reason(0, 0); !why.empty())
+                throw AgreedError(exit_stopped_early,
+                                  fmt::format("stopped early: {}; the next run settles from the start", why));
+        });
     else
         restart = evolution->read(options.restart, folder);
     Recorder recorder(comm, folder, scene, evolution->output(), !restart);
@@ -54,6 +58,7 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
                           fmt::format("{}\n{}", error.what(), recorder.after_failure(*evolution)));
     }
     recorder.finish(*evolution);
+    recorder.hand_over(*evolution);
     return exit_done;
 }
 

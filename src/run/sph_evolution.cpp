@@ -2,22 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "io/checkpoint.hpp"
 #include "src/run/restart.hpp"
 #include "src/run/scene_checks.hpp"
 #include "src/run/warnings.hpp"
 
 namespace talus {
 
-SphEvolution::SphEvolution(const Communicator& comm, const Scene& scene, double end_time)
-    : comm_(comm), scene_(scene), setup_(read_scene(comm, scene)) {
-    check_plan(scene, setup_, end_time > 0 ? end_time : setup_.output.end_time);
+SphEvolution::SphEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until)
+    : comm_(comm),
+      scene_(scene),
+      setup_(read_scene(comm, scene)),
+      end_time_(until.value_or(setup_.output.end_time)) {
+    if (setup_.hand_off) end_time_ = std::min(end_time_, setup_.hand_off->at);
+    check_plan(scene, setup_, end_time_);
 }
 
 std::vector<std::string> SphEvolution::warnings() const { return talus::warnings(setup_); }
 
-void SphEvolution::create() {
-    simulation_.emplace(comm_, setup_.simulation, make_particles(comm_, setup_));
+void SphEvolution::create(const std::function<void()>& check_stop) {
+    ParticleSet particles = make_particles(comm_, setup_);
+    settlings_ = settle(comm_, setup_, particles, check_stop);
+    simulation_.emplace(comm_, setup_.simulation, std::move(particles));
     check_box(scene_, *simulation_);
+}
+
+std::vector<std::string> SphEvolution::preparations() const {
+    std::vector<std::string> lines;
+    for (const Settling& settling : settlings_) lines.push_back(talus::describe(settling));
+    return lines;
 }
 
 ReadCheckpoint SphEvolution::read(const std::filesystem::path& what,
@@ -28,10 +43,9 @@ ReadCheckpoint SphEvolution::read(const std::filesystem::path& what,
     return {restart.file, restart.state, restart.seconds};
 }
 
-std::vector<std::string> SphEvolution::materials() const {
-    std::vector<std::string> names;
-    for (const Material& material : setup_.simulation.materials) names.push_back(material.name);
-    return names;
+void SphEvolution::describe(RunState& state) const {
+    if (simulation_->in_late_phase()) state.numbers["late_phase"] = setup_.simulation.late_phase->stiffness;
+    for (const Material& material : setup_.simulation.materials) state.materials.push_back(material.name);
 }
 
 std::vector<SnapshotField> SphEvolution::snapshot_fields() const {
@@ -122,7 +136,15 @@ std::string SphEvolution::analyse(const std::filesystem::path& folder, const Run
     if (!plan.asks_for_anything()) return {};
     const Breakup breakup = talus::analyse(comm_, plan, setup_.simulation.box, simulation_->particles());
     write_breakup(comm_, folder, state, plan, breakup);
-    return describe(plan, breakup);
+    return talus::describe(plan, breakup);
+}
+
+std::string SphEvolution::hand_over(const std::filesystem::path& folder, const RunState& state) const {
+    if (!setup_.hand_off || time() < setup_.hand_off->at) return {};
+    const HandOff result = hand_off(comm_, *setup_.hand_off, setup_.simulation.box, simulation_->particles());
+    const std::filesystem::path file = folder / "grains.h5";
+    write_particle_sets(comm_, file, state, {&result.grains});
+    return fmt::format("{}; {}", talus::describe(result), file.string());
 }
 
 }  // namespace talus

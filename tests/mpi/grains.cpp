@@ -6,8 +6,8 @@
 #include "tests/support/gathered.hpp"
 #include "tests/support/grain_scene.hpp"
 
-/// Grains and what their contacts remember have the same bits on any number of ranks, whoever owns what, however
-/// often lists are made, and across an interruption in the middle of contacts.
+/// Grains and what their contacts remember have the same bits on any number of ranks, whoever owns what,
+/// however often lists are made, and across an interruption in the middle of contacts.
 namespace talus::test {
 namespace {
 
@@ -22,8 +22,8 @@ const dem::GrainMaterial glass{.name = "glass",
                                .rolling_friction = 0.1,
                                .rolling_damping = 0.3};
 
-/// A dense cloud of two sizes in a box that is periodic along x and y, on a floor that swings and under a turning
-/// drum's side.
+/// A dense cloud of two sizes in a box that is periodic along x and y, on a floor that swings and under a
+/// turning drum's side.
 std::vector<GrainState> cloud() {
     std::vector<GrainState> grains;
     for (int k = 0; k < 700; ++k) {
@@ -49,7 +49,8 @@ GrainSetup cloud_setup() {
                                                 {},
                                                 {}};
         })};
-    setup.box = {3, {-0.003, 0.1, 0}, {0.0993, 0.2031, 0}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
+    setup.box = {
+        3, {-0.003, 0.1, 0}, {0.0993, 0.2031, 0}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
     setup.gravity = {0, 0, -9.81};
     dem::Wall floor{"floor", 0, dem::PlaneShape{{}, {0, 0, 1}}, {}};
     floor.motion.amplitude = {0.0005, 0, 0.0005};
@@ -128,7 +129,8 @@ TEST(GrainsSameBits, AfterInterruption) {
         // Each rank takes an equal share in order of id, as from a checkpoint.
         const auto share = [&](const GatheredState& state) {
             return [&, total = state.ids.size()](std::size_t k) {
-                return k * static_cast<std::size_t>(world.size()) / total == static_cast<std::size_t>(world.rank());
+                return k * static_cast<std::size_t>(world.size()) / total ==
+                       static_cast<std::size_t>(world.rank());
             };
         };
         ParticleSet grains("grains", 3);
@@ -136,8 +138,7 @@ TEST(GrainsSameBits, AfterInterruption) {
         fill(grains, saved_grains, share(saved_grains));
         ParticleSet read = dem::empty_contacts(3, GrainSimulation::history_fields(cloud_setup()));
         fill(read, saved_contacts, share(saved_contacts));
-        GrainSimulation second =
-            prepared(world, {PartitionMethod::bisection, 5, 0.0007}, std::move(grains));
+        GrainSimulation second = prepared(world, {PartitionMethod::bisection, 5, 0.0007}, std::move(grains));
         second.resume(first.time(), first.step_count(), read);
         for (int k = stop; k < steps; ++k) second.step();
         EXPECT_EQ(hash_of(world, second), serial_hash()) << "stopped at step " << stop;
