@@ -10,13 +10,7 @@ namespace talus::dem {
 /// the normal, and into the tangential plane of now without a change of its length.
 template <class Real>
 Vector3<Real> turned_with_contact(const Vector3<Real>& stored, const ContactKinematics<Real>& k) {
-    using std::max, std::min;
-    const Real angle = 0.5 * k.time_step * dot(k.summed_angular_velocity, k.normal);
-    const Vector3<Real> turned = tangential_part(stored + angle * cross(k.normal, stored), k.normal);
-    const Real before = dot(stored, stored), after = dot(turned, turned);
-    // sqrt(before/after) = sqrt(1 + loss), of second order in the angle of a step: to 1e-13 for 0.01 rad.
-    const Real loss = min(before / max(after, Real(1e-300)) - 1, Real(1.0));
-    return (1 + 0.5 * loss * (1 - 0.25 * loss)) * turned;
+    return turned_into_plane(stored, k.normal, 0.5 * k.time_step * dot(k.summed_angular_velocity, k.normal));
 }
 
 /// No friction.
