@@ -13,16 +13,6 @@ Vector3<Real> turned_with_contact(const Vector3<Real>& stored, const ContactKine
     return turned_into_plane(stored, k.normal, 0.5 * k.time_step * dot(k.summed_angular_velocity, k.normal));
 }
 
-/// No friction.
-template <class Real = double>
-struct Frictionless {
-    static constexpr std::size_t history_count = 0;
-    Vector3<Real> operator()(const ContactKinematics<Real>&, const ElasticResponse<Real>&, const Real&,
-                             Real*) const {
-        return {};
-    }
-};
-
 /// Coulomb's friction with a tangential spring and dashpot: F_t = -k_t xi - gamma_t v_t, |F_t| <= mu F_n.
 /// Where the cap is reached spring and dashpot are cut by the same share, so that the spring never bears more
 /// than what is left of the cap by the dashpot. P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47.
