@@ -181,6 +181,13 @@ inline constexpr Field<double> volume_gradient{
     "volume_gradient", "m2 kg-1", vector, work, halo, "gradient of the specific volume, raw kernel sum"};
 inline constexpr Field<double> volume_curvature{
     "volume_curvature", "m kg-1", symmetric_tensor, work, halo, "second derivatives of the specific volume"};
+inline constexpr Field<double> radius{"radius", "m", scalar, state, halo, "radius of the grain"};
+inline constexpr Field<double> angular_velocity{"angular_velocity", "rad s-1", vector, state, owner,
+                                                "angular velocity"};
+inline constexpr Field<double> moment_of_inertia{
+    "moment_of_inertia", "kg m2", scalar, state, owner, "of the grain about its centre, as an even sphere"};
+inline constexpr Field<std::uint64_t> particle_count{
+    "particle_count", "1", scalar, state, owner, "number of particles that the grain was made of"};
 inline constexpr Field<std::uint64_t> fragment{
     "fragment", "1", scalar, work, halo, "smallest id of the particles that hold together with this one"};
 inline constexpr Field<std::uint8_t> remnant{

@@ -149,10 +149,10 @@ void read_set(const Communicator& comm, const std::filesystem::path& file, const
 
 }  // namespace
 
-void write_checkpoint(const Communicator& comm, const std::filesystem::path& directory, const RunState& state,
-                      const std::vector<const ParticleSet*>& sets) {
+void write_particle_sets(const Communicator& comm, const std::filesystem::path& file, const RunState& state,
+                         const std::vector<const ParticleSet*>& sets) {
     ParticleFilePlan plan;
-    plan.file = directory / fmt::format("{}{:09}{}", prefix, state.step, suffix);
+    plan.file = file;
     plan.guarded = true;
     std::vector<IdOrder> orders;
     orders.reserve(sets.size());
@@ -176,8 +176,13 @@ void write_checkpoint(const Communicator& comm, const std::filesystem::path& dir
             plan.datasets.push_back(std::move(dataset));
         }
     }
-    plan.describe = [&](hid_t file) { describe(file, state, sets, orders); };
+    plan.describe = [&](hid_t opened) { describe(opened, state, sets, orders); };
     write_particle_file(comm, plan);
+}
+
+void write_checkpoint(const Communicator& comm, const std::filesystem::path& directory, const RunState& state,
+                      const std::vector<const ParticleSet*>& sets) {
+    write_particle_sets(comm, directory / fmt::format("{}{:09}{}", prefix, state.step, suffix), state, sets);
     agree_on_root(comm, [&] { remove_old(directory, state.step); });
 }
 

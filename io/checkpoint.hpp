@@ -18,6 +18,10 @@ namespace talus {
 void write_checkpoint(const Communicator& comm, const std::filesystem::path& directory, const RunState& state,
                       const std::vector<const ParticleSet*>& sets);
 
+/// Writes the same as one file, and leaves all others alone. Collective.
+void write_particle_sets(const Communicator& comm, const std::filesystem::path& file, const RunState& state,
+                         const std::vector<const ParticleSet*>& sets);
+
 /// Reads a checkpoint written by any number of ranks into `sets`, whose fields (ParticleSet::add) must be
 /// those of the file. Every rank receives an equal share of the particles in order of id; they must then be
 /// migrated to where they belong. Throws AgreedError (exit code 3) naming the file and its damaged section,

@@ -107,7 +107,28 @@ void Simulation::rebalance() {
         decomposition_.rebalance(pass_count_.work_of_cell);
 }
 
+/// The state that a step leaves is the one that is softened, so that a checkpoint holds it.
+void Simulation::enter_late_phase_when_due() {
+    if (!setup_.late_phase || in_late_phase_ || time_ < setup_.late_phase->from) return;
+    const std::vector<Material> before = setup_.materials;
+    soften_materials();
+    const auto body = std::as_const(particles_).own(field::body);
+    for (std::size_t b = 0; b < before.size(); ++b)
+        keep_pressure(before[b].eos, setup_.materials[b].eos,
+                      std::as_const(particles_).own(field::internal_energy), particles_.own(field::density),
+                      body, static_cast<std::uint8_t>(b));
+}
+
+void Simulation::soften_materials() {
+    in_late_phase_ = true;
+    for (std::size_t b = 0; b < setup_.materials.size(); ++b) {
+        setup_.materials[b] = softened(setup_.materials[b], setup_.late_phase->stiffness);
+        shear_moduli_[b] = setup_.materials[b].shear_modulus;
+    }
+}
+
 void Simulation::start() {
+    enter_late_phase_when_due();
     arrange();
     evaluate(0, 0);
     check_finite();
@@ -115,10 +136,14 @@ void Simulation::start() {
     time_step_ = std::min(time_step_, setup_.first_time_step);
 }
 
-void Simulation::resume(double time, double time_step, std::uint64_t step) {
+void Simulation::resume(double time, double time_step, std::uint64_t step, bool in_late_phase) {
     time_ = time;
     time_step_ = time_step;
     step_ = step;
+    if (in_late_phase)
+        soften_materials();
+    else
+        enter_late_phase_when_due();
     arrange();
 }
 
@@ -138,6 +163,7 @@ void Simulation::step() {
     ++step_;
     check_finite();
     choose_time_step();
+    enter_late_phase_when_due();
     phases_.stop();
 }
 

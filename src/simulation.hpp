@@ -13,6 +13,7 @@
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
 #include "physics/gravity/gravity.hpp"
+#include "physics/solid/late_phase.hpp"
 #include "physics/solid/material.hpp"
 #include "physics/sph/motion.hpp"
 #include "physics/sph/passes.hpp"
@@ -31,7 +32,8 @@ struct Setup {
     PartitionMethod partition = PartitionMethod::metis;
     double largest_damage_step = 0.1;  ///< D^(1/3) may grow by this much a step [1]
     double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
-    int rebalance_interval = 10;  ///< steps between looks at the imbalance
+    int rebalance_interval = 10;          ///< steps between looks at the imbalance
+    std::optional<LatePhase> late_phase;  ///< none: rock keeps its stiffness to the end
 };
 
 /// A field and the model that asks for it, in words.
@@ -68,8 +70,9 @@ class Simulation {
 
     /// First evaluation of a new run at time 0. Collective.
     void start();
-    /// Goes on from a checkpoint's state: particles as they were saved, with the rates. Collective.
-    void resume(double time, double time_step, std::uint64_t step);
+    /// Goes on from a checkpoint's state: particles as they were saved, with the rates; `in_late_phase`: as
+    /// it was then. Collective.
+    void resume(double time, double time_step, std::uint64_t step, bool in_late_phase = false);
 
     /// One time step. Throws AgreedError (exit code 1) if a value is not finite or a particle was lost.
     /// Collective.
@@ -78,6 +81,7 @@ class Simulation {
     double time() const { return time_; }            ///< [s]
     double time_step() const { return time_step_; }  ///< of the next step [s]
     std::uint64_t step_count() const { return step_; }
+    bool in_late_phase() const { return in_late_phase_; }
     const ParticleSet& particles() const { return particles_; }
     ParticleSet& particles() { return particles_; }
     const Setup& setup() const { return setup_; }
@@ -111,6 +115,8 @@ class Simulation {
     void evaluate(double time_ahead, double damage_time);
     void material_response(double damage_time);
     void hold_bodies();
+    void soften_materials();
+    void enter_late_phase_when_due();
     void choose_time_step();
     void check_finite();
 
@@ -125,7 +131,7 @@ class Simulation {
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     sph::PassCount pass_count_;
-    bool work_measured_ = false;
+    bool work_measured_ = false, in_late_phase_ = false;
     double damage_limit_ = std::numeric_limits<double>::infinity();
     sph::StepLimit limit_{};
     Phases phases_;

@@ -22,6 +22,7 @@ struct Material {
     /// Less pressure than this opens the matter, which keeps it [Pa]: 0 for fluids that bear no tension.
     double least_pressure = -std::numeric_limits<double>::infinity();
     double initial_internal_energy = 0;  ///< of a body at rest [J/kg]
+    double stiffness = 1;                ///< moduli in those of the real rock (late_phase.hpp) [1]
 
     /// E = 9 K mu / (3 K + mu) [Pa].
     double young_modulus() const {
@@ -31,10 +32,10 @@ struct Material {
     double longitudinal_speed() const {
         return std::sqrt((bulk_modulus + 4 * shear_modulus / 3) / reference_density);
     }
-    /// Crack growth at this material's constants; only if it has a fracture model.
+    /// Crack growth at the real rock's constants; only if it has a fracture model.
     CrackGrowth crack_growth() const {
-        return {.crack_speed = fracture->crack_speed_fraction * longitudinal_speed(),
-                .young_modulus = young_modulus(),
+        return {.crack_speed = fracture->crack_speed_fraction * longitudinal_speed() / std::sqrt(stiffness),
+                .young_modulus = young_modulus() / stiffness,
                 .crack_count_power = fracture->crack_count_power};
     }
 };

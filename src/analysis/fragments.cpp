@@ -37,13 +37,9 @@ class DisjointSets {
 
 /// The particles that can belong to fragments, as a set of their own.
 ParticleSet linkable_particles(const ParticleSet& particles, const FragmentRules& rules) {
-    const std::uint8_t* body = particles.data(field::body);
-    const bool chooses = !rules.all_matter && particles.has(field::damage);
-    const double* damage = chooses ? particles.data(field::damage) : nullptr;
     std::vector<std::uint32_t> chosen;
     for (std::uint32_t i = 0; i < particles.size(); ++i)
-        if (rules.linking_length[body[i]] > 0 && !(damage && damage[i] >= rules.damage_threshold))
-            chosen.push_back(i);
+        if (may_link(particles, rules, i)) chosen.push_back(i);
     const FieldInfo* const fields[] = {&field::velocity, &field::mass, &field::body, &field::damage,
                                        &field::smoothing_length};
     ParticleSet linkable = selected("fragments", particles, chosen, fields);
@@ -197,6 +193,12 @@ void reduce_shared(const Communicator& comm, const ByLabel& own, std::span<const
 }
 
 }  // namespace
+
+bool may_link(const ParticleSet& particles, const FragmentRules& rules, std::size_t i) {
+    if (!(rules.linking_length[particles.data(field::body)[i]] > 0)) return false;
+    const bool any_damage = rules.all_matter || !particles.has(field::damage);
+    return any_damage || particles.data(field::damage)[i] < rules.damage_threshold;
+}
 
 LinkedParticles link_particles(const Communicator& comm, const Box& box, const ParticleSet& particles,
                                const FragmentRules& rules) {

@@ -20,6 +20,9 @@ struct FragmentRules {
     bool operator==(const FragmentRules&) const = default;
 };
 
+/// Whether own particle `i` can belong to a fragment.
+bool may_link(const ParticleSet& particles, const FragmentRules& rules, std::size_t i);
+
 /// One connected piece.
 struct Fragment {
     std::uint64_t label;             ///< smallest id of its particles

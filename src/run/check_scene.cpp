@@ -134,6 +134,7 @@ int check_scene(const Communicator& comm, const RunOptions& options) {
     for (const Material& material : setup.simulation.materials) print_scan(material);
     for (const std::string& warning : warnings(setup)) fmt::print("note: {}\n", warning);
     print_fields(simulation.particles(), setup.simulation);
+    if (setup.settle) fmt::print("\nbodies settle before the start, which is not counted below\n");
     const double steps = setup.output.end_time / first_step;
     fmt::print("\nparticles: {} on {} ranks\n", simulation.total_particles(), comm.size());
     print_memory(memory, simulation.particles(), largest, largest_halo);

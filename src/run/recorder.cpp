@@ -61,6 +61,7 @@ RunState run_state(const Simulation& simulation, const Scene& scene) {
     state.scene_text = scene.text();
     state.resolved_scene = scene.resolved();
     state.version = TALUS_VERSION;
+    if (simulation.in_late_phase()) state.numbers["late_phase"] = simulation.setup().late_phase->stiffness;
     for (const Material& material : simulation.setup().materials) state.materials.push_back(material.name);
     return state;
 }
@@ -140,6 +141,11 @@ void Recorder::go_on_from(const Restart& restart) {
         files_->log->warn("the scene differs from the one that wrote this checkpoint");
 }
 
+void Recorder::note(const std::vector<Settling>& settlings) {
+    if (!comm_.is_root()) return;
+    for (const Settling& settling : settlings) files_->log->info("{}", describe(settling));
+}
+
 void Recorder::begin(Simulation& simulation, double end_time) {
     first_step_ = simulation.step_count();
     time_before_ = simulation.time();
@@ -212,6 +218,12 @@ void Recorder::finish(Simulation& simulation) {
     }
     write_analysis(simulation);
     print_summary(simulation);
+}
+
+void Recorder::hand_over(const Simulation& simulation, const HandOff& result) {
+    const std::filesystem::path file = folder_ / "grains.h5";
+    write_particle_sets(comm_, file, run_state(simulation, scene_), {&result.grains});
+    if (comm_.is_root()) files_->log->info("{}; {}", describe(result), file.string());
 }
 
 std::string Recorder::after_failure(const Simulation& simulation) {

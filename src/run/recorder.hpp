@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "io/scene.hpp"
 #include "src/run/restart.hpp"
@@ -25,6 +26,8 @@ class Recorder {
 
     /// Notes that the run is not new: it goes on from the state of a checkpoint.
     void go_on_from(const Restart& restart);
+    /// Notes how the bodies came to rest before the start.
+    void note(const std::vector<Settling>& settlings);
     /// Before the first step: describes the run, and for a new one writes its first state.
     void begin(Simulation& simulation, double end_time);
     void after_step(Simulation& simulation);
@@ -32,6 +35,9 @@ class Recorder {
     void stop_early(Simulation& simulation, const std::string& why);
     /// Writes the last state and what the scene wants to know of it; prints the table of time per phase.
     void finish(Simulation& simulation);
+
+    /// Writes the grains that the run ends with, `folder`/grains.h5.
+    void hand_over(const Simulation& simulation, const HandOff& result);
 
     /// After a failure of step(): keeps the state that failed in `folder`/failed for a look with `talus
     /// info`, and says where it is and where to go on from.

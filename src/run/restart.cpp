@@ -32,6 +32,17 @@ void check_bodies(const Restart& restart, const SceneSetup& setup) {
                                                  restart.file.string(), body, listed(wanted)));
 }
 
+/// Throws std::runtime_error if the particles were softened by another stiffness than the scene's.
+void check_late_phase(const Restart& restart, const SceneSetup& setup) {
+    const auto stored = restart.state.numbers.find("late_phase");
+    if (stored == restart.state.numbers.end()) return;
+    const std::optional<LatePhase>& wanted = setup.simulation.late_phase;
+    if (!wanted || wanted->stiffness != stored->second)
+        throw std::runtime_error(fmt::format(
+            "{}: is of the late phase of a scene with late_phase.stiffness = {}, this one has {}",
+            restart.file.string(), stored->second, wanted ? fmt::to_string(wanted->stiffness) : "none"));
+}
+
 }  // namespace
 
 Restart read_restart(const Communicator& comm, const std::filesystem::path& what,
@@ -39,7 +50,10 @@ Restart read_restart(const Communicator& comm, const std::filesystem::path& what
     const auto began = std::chrono::steady_clock::now();
     Restart restart{find_checkpoint(comm, what, output_folder), {}, empty_particles(setup)};
     restart.state = read_checkpoint(comm, restart.file, {&restart.particles});
-    agree_on(comm, [&] { check_bodies(restart, setup); });
+    agree_on(comm, [&] {
+        check_bodies(restart, setup);
+        check_late_phase(restart, setup);
+    });
     restart.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return restart;
 }

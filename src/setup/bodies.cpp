@@ -52,10 +52,14 @@ struct VelocityAt {
     }
 };
 
+}  // namespace
+
 Point velocity_at(const Body& body, const Point& x, const Point& centre_of_mass, int dimension) {
     const Point field = std::visit(VelocityAt{x, dimension}, body.velocity_field);
     return plus(field, plus(body.velocity, cross(body.spin, minus(x, centre_of_mass))));
 }
+
+namespace {
 
 /// Where a point of an even sphere goes so that its distance from the centre encloses the same mass.
 Point displaced(const Body& body, const Point& x) {

@@ -79,6 +79,9 @@ ParticleSet make_particles(const Communicator& comm, const std::vector<Body>& bo
                            const std::vector<Material>& materials, const ParticleSet& prototype,
                            const sph::Settings& settings, std::uint64_t seed);
 
+/// Velocity of the body's matter at `x` at time 0 [m/s].
+Point velocity_at(const Body& body, const Point& x, const Point& centre_of_mass, int dimension);
+
 /// Whether a particle of one of the bodies lies inside the other.
 bool overlap(const Body& a, const Body& b, int dimension);
 

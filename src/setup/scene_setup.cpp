@@ -125,6 +125,19 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
     return settings;
 }
 
+std::optional<LatePhase> read_late_phase(const Section& root, const Setup& simulation) {
+    const Section table = root.section("late_phase");
+    if (!table.exists()) return {};
+    if (simulation.sph.density != sph::DensityMethod::continuity)
+        table.error("", "needs sph.density = \"continuity\"");
+    for (const Material& material : simulation.materials)
+        if (std::holds_alternative<IdealGas>(material.eos))
+            table.error(
+                "", fmt::format("'{}' is an ideal gas, which has no stiffness of its own", material.name));
+    return LatePhase{.from = table.number("from", "s", {}, not_negative),
+                     .stiffness = table.number("stiffness", "1", 0.01, {0, 1, true})};
+}
+
 PartitionMethod read_partition(const Section& table) {
     const std::string name =
         table.choice("decomposition", {"metis", "bisection", "slabs", "scrambled"}, "metis");
@@ -250,6 +263,8 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.simulation.sph =
         read_sph(root.section("sph"), dimension, setup.simulation.materials, widest_open_spacing(setup));
     read_contacts(root, setup);
+    setup.simulation.late_phase = read_late_phase(root, setup.simulation);
+    setup.settle = read_settle(root, setup.bodies, setup.simulation);
     const Section run = root.section("run");
     setup.output.end_time = run.number("end_time", "s", {}, positive);
     setup.simulation.first_time_step = run.has("first_time_step")
@@ -263,6 +278,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.output.diagnostics_interval = output.number("diagnostics", "s", 0.0, not_negative);
     setup.output.checkpoint_interval = output.number("checkpoints", "s", 1800.0, not_negative);
     setup.analysis = read_analysis(root.section("analysis"), setup.bodies, setup.simulation);
+    setup.hand_off = read_hand_off(root, setup.bodies, setup.simulation, setup.output.end_time);
     scene.finish();
     return setup;
 }

@@ -5,7 +5,9 @@
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
 #include "src/analysis/analysis.hpp"
+#include "src/analysis/hand_off.hpp"
 #include "src/setup/impact.hpp"
+#include "src/setup/settle.hpp"
 #include "src/simulation.hpp"
 
 namespace talus {
@@ -26,9 +28,11 @@ struct SceneSetup {
     std::vector<Body> bodies;
     std::vector<BodyCensus> census;                   ///< one a body, of the bodies as they were read
     std::optional<Impact> impact;                     ///< as the scene's [impact] table asks
+    std::optional<SettlePlan> settle;                 ///< none: the bodies start as they are made
     double gravitational_constant = newton_constant;  ///< that of [gravity], if given [m3 kg-1 s-2]
     OutputPlan output;
     AnalysisPlan analysis;
+    std::optional<HandOffPlan> hand_off;  ///< none: the run is SPH to its end
     std::uint64_t seed = 0;
 };
 
@@ -38,7 +42,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene);
 /// An empty set with the fields the scene's models need.
 ParticleSet empty_particles(const SceneSetup& setup);
 
-/// The scene's particles at time 0. Collective.
+/// The scene's particles at time 0, before they settle. Collective.
 ParticleSet make_particles(const Communicator& comm, const SceneSetup& setup);
 
 }  // namespace talus

@@ -237,6 +237,43 @@ class Restarts(Case):
             for name, content in self.files().items():
                 self.assertTrue(content == before[name], name + " has changed")
 
+    def test_bodies_that_settled_do_not_settle_again(self):
+        def run(out, steps, *options):
+            done = talus("run", RUNS / "asteroid_collision", "--quick", "--steps", steps, "--out", out, "--set",
+                         "settle.imbalance=0.2", *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            return done.stdout.count("' settled in ")
+        straight = self.folder / "straight"
+        self.assertEqual(run(straight, 6), 2)
+        self.assertEqual(run(self.out, 3), 2)
+        self.assertEqual(run(self.out, 6, "--restart", "latest"), 0)
+        self.assertEqual(self.hash(self.out), self.hash(straight))
+
+    def test_settling_that_is_stopped_keeps_what_was_there(self):
+        options = ["run", RUNS / "asteroid_collision", "--quick", "--steps", "2", "--out", self.out]
+        self.assertEqual(talus(*options).returncode, 0)
+        before = self.hash(self.out)
+        done = talus(*options, "--set", "settle.imbalance=0.2", "--walltime", "0")
+        self.assert_fails(done, 75, "settling body 'first': stopped early: .*wall time")
+        self.assertEqual(self.hash(self.out), before)
+
+    def test_one_past_the_time_hands_over_at_once(self):
+        options = ["run", RUNS / "asteroid_collision", "--quick", "--out", self.out, "--set", "hand_off.to=grains"]
+        done = talus(*options, "--steps", "3")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        grains = self.out / "grains.h5"
+        self.assertFalse(grains.exists(), "before its time")
+        hashes = set()
+        for ranks in (1, 3):
+            done = talus(*options, "--restart", "latest", "--set", "hand_off.at=1e-3", ranks=ranks)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertRegex(done.stdout, r"handed over: (\d+) particles became \d+ grains")
+            hashes.add(self.hash(grains))
+            grains.unlink()
+        self.assertEqual(len(hashes), 1)
+        done = talus(*options, "--set", "hand_off.at=1 d")
+        self.assert_fails(done, 2, "hand_off.at = .*after the end of the run")
+
 
 class DamagedCheckpoints(Case):
     def test_a_flipped_byte_is_refused_and_the_previous_checkpoint_offered(self):

@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
             settings.precision = precision;
             settings.order = order;
             settings.opening = gravity::Opening::geometric;
-            for (const double theta : {0.4, 0.5, 0.6, 0.7, 0.8, 0.9}) {
+            for (const double theta : {0.4, 0.5, 0.6, 0.65, 0.7, 0.8, 0.9}) {
                 settings.theta = theta;
                 measure(cloud, settings, exact);
             }

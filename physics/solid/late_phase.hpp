@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "physics/solid/material.hpp"
+
+namespace talus {
+
+/// From `from` on rock is softer than it is, so that sound, and with it the time step, does not keep pace
+/// with waves that no longer matter: what is left, sliding and falling together under gravity, is slower by
+/// orders of magnitude. S. D. Raducan, M. Jutzi, Planet. Sci. J. 3 (2022) 128, section 2.4, lower the bulk
+/// modulus for the same reason. Here pressure, stress and strength are carried over, only densities change.
+struct LatePhase {
+    double from;       ///< time [s]
+    double stiffness;  ///< elastic moduli, in those of the material [1]
+};
+
+/// The material with its elastic moduli (A and B of Tillotson, c^2 of the others) times `stiffness`.
+/// Strength, thermal pressure and the growth of cracks at a given stress stay as they are. Throws
+/// std::invalid_argument for an ideal gas, whose stiffness is its pressure.
+Material softened(const Material& material, double stiffness);
+
+/// Moves the density of every particle with body == which to where the softened equation of state gives the
+/// pressure that `before` has now, at the same internal energy. Matter that is stretched further than the
+/// softer one could hold (torn or loose) keeps its density.
+void keep_pressure(const EquationOfState& before, const EquationOfState& after,
+                   std::span<const double> internal_energy, std::span<double> density,
+                   std::span<const std::uint8_t> body, std::uint8_t which);
+
+}  // namespace talus

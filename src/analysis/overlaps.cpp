@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "comm/decomposition.hpp"
+#include "domain/partners.hpp"
+#include "src/analysis/hand_off.hpp"
+#include "src/analysis/selection.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Radii over the least up to which grains find each other on one grid; those that are larger, few, are
+/// compared with all.
+constexpr double alike = 3;
+
+struct Sphere {
+    std::uint64_t id;
+    Point centre;
+    double radius;
+};
+
+Sphere sphere_at(const ParticleSet& grains, std::size_t i) {
+    return {grains.data(field::id)[i],
+            {grains.data(field::position, 0)[i], grains.data(field::position, 1)[i],
+             grains.data(field::position, 2)[i]},
+            grains.data(field::radius)[i]};
+}
+
+/// Adds a pair, if it overlaps. Pairs are counted in halves.
+void look_at(const Sphere& a, const Sphere& b, std::uint64_t halves, Overlaps& found) {
+    const double overlap = a.radius + b.radius - norm(minus(a.centre, b.centre));
+    if (!(overlap > 0)) return;
+    found.pairs += halves;
+    found.deepest = std::max(found.deepest, overlap);
+    found.share = std::max(found.share, overlap / std::min(a.radius, b.radius));
+}
+
+/// Each pair is seen from both its grains.
+void look_at_small(const Communicator& comm, ParticleSet small, double largest, Overlaps& found) {
+    if (comm.all_sum(static_cast<std::uint64_t>(small.size())) < 2) return;
+    Box open;
+    open.dimension = 3;
+    const CellGrid grid(open, 2 * largest, 1);
+    Decomposition decomposition(comm, PartitionMethod::metis);
+    decomposition.expect(small);
+    decomposition.divide(small, grid);
+    decomposition.arrange(small, grid);
+    decomposition.halo().begin(small, {&field::position, &field::radius});
+    decomposition.halo().finish();
+    Partners<3> partners(
+        {small.data(field::position, 0), small.data(field::position, 1), small.data(field::position, 2)},
+        small.data(field::radius), 2);
+    decomposition.table().for_each_own(
+        Cells::all, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+            partners.enter(cell, runs);
+            for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
+                partners.find_mutual(i, 2);
+                for (const std::uint32_t k : partners.index())
+                    look_at(sphere_at(small, i), sphere_at(small, k), 1, found);
+            }
+        });
+}
+
+}  // namespace
+
+Overlaps overlaps_of(const Communicator& comm, const ParticleSet& grains) {
+    const auto radius = grains.own(field::radius);
+    const auto least = std::min_element(radius.begin(), radius.end());
+    const double small_up_to =
+        alike * comm.all_min(least == radius.end() ? std::numeric_limits<double>::infinity() : *least);
+    std::vector<std::uint32_t> small;
+    std::vector<Sphere> large;
+    for (std::uint32_t i = 0; i < grains.size(); ++i) {
+        if (radius[i] <= small_up_to)
+            small.push_back(i);
+        else
+            large.push_back(sphere_at(grains, i));
+    }
+    Overlaps found;
+    const FieldInfo* const fields[] = {&field::radius};
+    look_at_small(comm, selected("grains", grains, small, fields), small_up_to, found);
+    const std::vector<Sphere> all_large = comm.all_gather(std::span<const Sphere>(large));
+    for (const Sphere& one : all_large) {
+        for (const std::uint32_t i : small) look_at(one, sphere_at(grains, i), 2, found);
+        for (const Sphere& mine : large)
+            if (mine.id != one.id) look_at(one, mine, 1, found);
+    }
+    return {comm.all_sum(found.pairs) / 2, comm.all_max(found.deepest), comm.all_max(found.share)};
+}
+
+}  // namespace talus

@@ -1,0 +1,69 @@
+#include "physics/solid/late_phase.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+#include "tests/support/solid_materials.hpp"
+
+namespace talus {
+namespace {
+
+Material rock() {
+    return {.name = "basalt",
+            .eos = test::basalt(),
+            .shear_modulus = 22.7e9,
+            .bulk_modulus = 26.7e9,
+            .reference_density = 2700,
+            .fracture = Fracture{.weibull_k = 4e35, .weibull_m = 9}};
+}
+
+TEST(LatePhase, SlowsSoundByTheRootOfTheStiffnessAndCracksNotAtAll) {
+    const Material stiff = rock(), soft = softened(stiff, 0.01);
+    EXPECT_NEAR(soft.longitudinal_speed(), 0.1 * stiff.longitudinal_speed(), 1e-9);
+    EXPECT_NEAR(evaluate(soft.eos, 2700, 0).sound_speed, 0.1 * evaluate(stiff.eos, 2700, 0).sound_speed,
+                1e-9);
+    EXPECT_EQ(bulk_modulus(soft.eos), soft.bulk_modulus);
+    EXPECT_NEAR(soft.crack_growth().crack_speed, stiff.crack_growth().crack_speed, 1e-9);
+    EXPECT_NEAR(soft.crack_growth().young_modulus / stiff.crack_growth().young_modulus, 1, 1e-14);
+    const Material twice = softened(soft, 0.5);
+    EXPECT_NEAR(twice.crack_growth().crack_speed, stiff.crack_growth().crack_speed, 1e-9);
+}
+
+/// Pressures at depth in a body of 50 km (some MPa), of a slow impact (some 100 MPa), warm matter, tension
+/// within what the softer rock holds, none at all. The roots are found by halving an interval 60 times: to
+/// rounding.
+TEST(LatePhase, KeepsThePressure) {
+    const Material stiff = rock(), soft = softened(stiff, 0.01);
+    const std::vector<double> energy = {0, 1e3, 0, 2e4, 0, 0};
+    std::vector<double> density = {
+        2700 * (1 + 1e-4), 2700 * (1 + 2e-4), 2700 * (1 + 1e-2), 2710, 2700 * (1 - 5e-4), 2700};
+    const std::vector<std::uint8_t> body(density.size(), 0);
+    const std::vector<double> before = density;
+    keep_pressure(stiff.eos, soft.eos, energy, density, body, 0);
+    for (std::size_t i = 0; i < density.size(); ++i)
+        EXPECT_NEAR(pressure(soft.eos, density[i], energy[i]), pressure(stiff.eos, before[i], energy[i]), 1)
+            << i;
+    EXPECT_NEAR(density[0] / 2700 - 1, 0.0099, 0.0002)
+        << "P = A mu + B mu^2: a hundred times the compression";
+    EXPECT_NEAR(density[5], 2700, 1e-9);
+}
+
+TEST(LatePhase, LeavesTornMatterAndOtherBodiesAlone) {
+    const Material stiff = rock(), soft = softened(stiff, 0.01);
+    std::vector<double> density = {2200, 2720};
+    keep_pressure(stiff.eos, soft.eos, std::vector<double>{0, 0}, density, std::vector<std::uint8_t>{0, 1},
+                  0);
+    EXPECT_EQ(density[0], 2200) << "stretched further than the softer rock could hold";
+    EXPECT_EQ(density[1], 2720);
+}
+
+TEST(LatePhase, KnowsNoIdealGas) {
+    Material gas = rock();
+    gas.eos = IdealGas{};
+    EXPECT_THROW(softened(gas, 0.1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace talus
