@@ -40,4 +40,16 @@ Vector3<Real> tangential_part(const Vector3<Real>& a, const Vector3<Real>& n) {
     return a - dot(a, n) * n;
 }
 
+/// `a` turned by the small `angle` [rad] about the unit vector `n`, then laid into the plane across it
+/// without a change of its length: what a vector of an earlier plane has become when `n` has moved a little.
+template <class Real>
+Vector3<Real> turned_into_plane(const Vector3<Real>& a, const Vector3<Real>& n, const Real& angle) {
+    using std::max, std::min;
+    const Vector3<Real> turned = tangential_part(a + angle * cross(n, a), n);
+    const Real before = dot(a, a), after = dot(turned, turned);
+    // sqrt(before/after) = sqrt(1 + loss), of second order in the angles: to 1e-13 for 0.01 rad.
+    const Real loss = min(before / max(after, Real(1e-300)) - 1, Real(1.0));
+    return (1 + 0.5 * loss * (1 - 0.25 * loss)) * turned;
+}
+
 }  // namespace talus::dem

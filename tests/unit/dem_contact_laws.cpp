@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "domain/random.hpp"
 #include "physics/dem/laws/time_step.hpp"
 #include "tests/support/grain_collision.hpp"
+#include "tests/support/wall_touch.hpp"
 
 namespace talus::dem {
 namespace {
@@ -57,23 +57,11 @@ Law make_law(const PairProperties& p, EndOfContact end = EndOfContact::cut_at_ze
     return law;
 }
 
-class Random {
-  public:
-    double operator()(double low, double high) { return low + (high - low) * stream_.uniform(next_++, 0); }
-    Vector3<double> vector(double size) {
-        return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
-    }
-
-  private:
-    RandomStream stream_{.seed = 5};
-    std::uint64_t next_ = 0;
-};
-
 struct RandomPair {
     Grain<double> first, second;
     Vector3<double> separation;
 };
-RandomPair random_pair(Random& random) {
+RandomPair random_pair(RandomValues& random) {
     const auto grain = [&] {
         return Grain<double>{random.vector(1), random.vector(200), random(2e-3, 6e-3), random(1e-4, 1e-3)};
     };
@@ -96,7 +84,7 @@ using Laws = testing::Types<WithFriction<LinearSpring<double>>, WithFriction<Her
 TYPED_TEST_SUITE(EveryLaw, Laws, );
 
 TYPED_TEST(EveryLaw, SecondSideSeesTheNegativeToTheBit) {
-    Random random;
+    RandomValues random(5);
     const auto law = make_law<TypeParam>(glass(0.6, 0.4));
     for (int sample = 0; sample < 300; ++sample) {
         RandomPair pair = random_pair(random);
@@ -116,7 +104,7 @@ TYPED_TEST(EveryLaw, SecondSideSeesTheNegativeToTheBit) {
 }
 
 TYPED_TEST(EveryLaw, NoTouchNoForceAndNoHistory) {
-    Random random;
+    RandomValues random(5);
     const auto law = make_law<TypeParam>(glass(0.6, 0.4));
     RandomPair pair = random_pair(random);
     typename TypeParam::History history;
@@ -131,7 +119,7 @@ TYPED_TEST(EveryLaw, NoTouchNoForceAndNoHistory) {
 }
 
 TYPED_TEST(EveryLaw, PlaneWallIsAGrainOfInfiniteRadiusAndMass) {
-    Random random;
+    RandomValues random(5);
     const auto law = make_law<TypeParam>(glass(0.6, 0.4));
     for (int sample = 0; sample < 100; ++sample) {
         const Grain<double> grain{random.vector(1), random.vector(100), 3e-3, 2e-4};
@@ -160,7 +148,7 @@ TYPED_TEST(EveryLaw, EnergyNeverGrowsAtAnyAngle) {
             const double speed = 2,
                          dt = hertz_collision_time(glass(1, 0).effective_modulus, 3e-3, ball.mass, speed) /
                               600;
-            for (int angle = 0; angle < 90; angle += 3) {
+            for (int angle = 0; angle < 90; angle += 5) {
                 const double radians = angle * pi / 180;
                 ball.velocity = {speed * std::sin(radians), 0, -speed * std::cos(radians)};
                 for (const double spin : {0.0, 1.0, -1.0}) {
@@ -264,7 +252,7 @@ TYPED_TEST(EveryLaw, StoredDisplacementsTurnWithTheContact) {
 
 template <template <class> class Law>
 void expect_lanes_agree() {
-    Random random;
+    RandomValues random(5);
     const auto law = make_law<Law<double>>(glass(0.6, 0.4));
     const auto wide = in_all_lanes<Law<Lanes>>(law);
     std::vector<RandomPair> pairs;
@@ -331,9 +319,16 @@ TEST(ContactLaws, FrictionIsCappedAndKeepsWhatItBears) {
         const auto load = law(k, history);
         EXPECT_LE(std::abs(load.force.x), 0.4 * load.force.z * (1 + 1e-12));
     }
-    k.velocity = {};
-    const auto at_rest = law(k, history);  // the spring bears the whole of the friction
-    EXPECT_NEAR(at_rest.force.x, -0.4 * at_rest.force.z, 1e-9 * at_rest.force.z);
+    const double gamma_t = law.elasticity.tangential_damping *
+                           std::sqrt(4.0 / 3 * law.elasticity.effective_modulus * 1e-4 * k.effective_mass);
+    for (const double speed :
+         {0.01, 0.002}) {  // the spring bears what the dashpot leaves of the cap, and keeps it
+        k.velocity = {speed, 0, 0};
+        for (int step = 0; step < 20000; ++step) law(k, history);
+        k.velocity = {};
+        const auto at_rest = law(k, history);
+        EXPECT_NEAR(-at_rest.force.x / (0.4 * at_rest.force.z - gamma_t * speed), 1, 0.02);
+    }
 }
 
 TEST(Cohesion, JkrPullsOffAtThePublishedForceAndTearsAtThePublishedGap) {

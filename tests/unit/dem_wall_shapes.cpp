@@ -5,25 +5,14 @@
 #include <numbers>
 #include <vector>
 
-#include "domain/random.hpp"
 #include "physics/dem/walls/wall.hpp"
 #include "tests/support/grain_collision.hpp"
+#include "tests/support/wall_touch.hpp"
 
 namespace talus::dem {
 namespace {
 
 constexpr double pi = std::numbers::pi, smooth = pi / 6;
-
-template <class Shape>
-std::vector<SurfaceContact> touch(const Shape& shape, const Vector3<>& centre, double reach) {
-    std::vector<SurfaceContact> contacts;
-    shape.find_contacts(centre, reach, contacts);
-    return contacts;
-}
-
-void expect_near(const Vector3<>& a, const Vector3<>& b, double tolerance) {
-    EXPECT_LE(norm(a - b), tolerance);
-}
 
 void expect_one(const std::vector<SurfaceContact>& contacts, double distance, const Vector3<>& normal) {
     ASSERT_EQ(contacts.size(), 1);
@@ -115,14 +104,12 @@ TEST(WallShapes, RevolvedSheetAndItsTrianglesAgree) {
         }
     const TriangleSurface surface(mesh, smooth, 0.01);
     EXPECT_EQ(surface.part_count(), 2);
-    const RandomStream stream{.seed = 8};
+    RandomValues random(8);
     std::vector<std::uint32_t> triangles;
     int touching = 0;
     const double sagitta = 0.1 * (1 - std::cos(pi / around));  // 1.5e-5
-    for (std::uint64_t sample = 0; sample < 20000; ++sample) {
-        const Vector3<> centre{0.12 * (2 * stream.uniform(sample, 0) - 1),
-                               0.12 * (2 * stream.uniform(sample, 1) - 1),
-                               -0.08 + 0.2 * stream.uniform(sample, 2)};
+    for (int sample = 0; sample < 20000; ++sample) {
+        const Vector3<> centre{random(-0.12, 0.12), random(-0.12, 0.12), random(-0.08, 0.12)};
         const double reach = 0.008;
         auto exact = touch(silo, centre, reach);
         if (exact.size() != 1 || std::abs(exact[0].distance - reach) < 2 * sagitta ||
@@ -184,11 +171,10 @@ TEST(WallMotions, VelocitiesAreTheRatesOfChange) {
 TEST(WallMotions, DisplacementsAreBounded) {
     const WallMotion motion = some_motion();
     const WallPose from = motion.pose(0.9);
-    const RandomStream stream{.seed = 2};
-    for (std::uint64_t sample = 0; sample < 300; ++sample) {
-        const WallPose to = motion.pose(0.9 + 0.3 * stream.uniform(sample, 0));
-        Vector3<> offset{2 * stream.uniform(sample, 1) - 1, 2 * stream.uniform(sample, 2) - 1,
-                         2 * stream.uniform(sample, 3) - 1};
+    RandomValues random(2);
+    for (int sample = 0; sample < 300; ++sample) {
+        const WallPose to = motion.pose(random(0.9, 1.2));
+        Vector3<> offset = random.vector(1);
         offset = (0.2 / norm(offset)) * offset;
         const Vector3<> centre{0.5, 1, -0.2}, place = from.in_wall(centre + offset);
         EXPECT_LE(norm(carried(to, place) - carried(from, place)),

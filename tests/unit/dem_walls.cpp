@@ -7,27 +7,15 @@
 #include <numbers>
 #include <vector>
 
-#include "domain/random.hpp"
 #include "physics/dem/walls/wall.hpp"
 #include "tests/support/grain_collision.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/wall_touch.hpp"
 
 namespace talus::dem {
 namespace {
 
 constexpr double pi = std::numbers::pi, smooth = pi / 6;
-
-class Random {
-  public:
-    double operator()(double low, double high) { return low + (high - low) * stream_.uniform(next_++, 0); }
-    Vector3<> vector(double size) {
-        return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
-    }
-
-  private:
-    RandomStream stream_{.seed = 3};
-    std::uint64_t next_ = 0;
-};
 
 std::vector<SurfaceContact> touch(const TriangleSurface& surface, const Vector3<>& centre, double reach) {
     std::vector<std::uint32_t> triangles;
@@ -36,21 +24,10 @@ std::vector<SurfaceContact> touch(const TriangleSurface& surface, const Vector3<
     surface.find_contacts(triangles, centre, reach, contacts);
     return contacts;
 }
-template <class Shape>
-std::vector<SurfaceContact> touch(const Shape& shape, const Vector3<>& centre, double reach) {
-    std::vector<SurfaceContact> contacts;
-    shape.find_contacts(centre, reach, contacts);
-    return contacts;
-}
-
-void expect_near(const Vector3<>& a, const Vector3<>& b, double tolerance) {
-    EXPECT_LE(norm(a - b), tolerance);
-}
-
 /// An irregular net of 2 n^2 triangles over the square of half side `half`: at (x, y), as `place` says.
 template <class Place>
 TriangleMesh net(int n, double half, double irregularity, Place&& place) {
-    Random random;
+    RandomValues random(3);
     TriangleMesh mesh;
     const auto side = static_cast<std::uint32_t>(n + 1);
     for (std::uint32_t j = 0; j < side; ++j)
@@ -96,7 +73,7 @@ TEST(TriangleSheets, TiledPlaneIsTouchedLikeAPlane) {
     const TriangleSurface tiles(net(9, 1, 0.3, [&](double x, double y) { return x * u + y * v; }), smooth,
                                 0.1);
     EXPECT_EQ(tiles.part_count(), 1);
-    Random random;
+    RandomValues random(3);
     const auto expect_plane = [&](const Vector3<>& foot) {
         const double height = random(0.01, 0.1) * (random(-1, 1) > 0 ? 1 : -1);
         const auto contacts = touch(tiles, foot + height * normal, 0.11);
@@ -193,7 +170,7 @@ TEST(TriangleSheets, OverAConvexEdgeTheContactChangesContinuously) {
 TEST(TriangleSheets, ConcaveCornersAreTouchedByEachFace) {
     const TriangleSurface box(cube(1), smooth, 0.2);
     EXPECT_EQ(box.part_count(), 6);
-    Random random;
+    RandomValues random(3);
     for (int sample = 0; sample < 2000; ++sample) {  // inside: the faces, as of a container
         const Vector3<> centre = random.vector(0.999);
         auto contacts = touch(box, centre, 0.25),
@@ -211,7 +188,7 @@ TEST(TriangleSheets, ConcaveCornersAreTouchedByEachFace) {
 TEST(TriangleSheets, ConvexEdgesAndCornersAreTouchedOnce) {
     const TriangleSurface box(cube(1), smooth, 0.2);
     const BlockShape block{{-1, -1, -1}, {1, 1, 1}};
-    Random random;
+    RandomValues random(3);
     int touching = 0;
     for (int sample = 0; sample < 20000; ++sample) {
         const Vector3<> centre = random.vector(1.3);
@@ -237,7 +214,7 @@ TEST(TriangleSheets, ConvexEdgesAndCornersAreTouchedOnce) {
 TEST(TriangleSheets, BallIsTouchedOnceFromOutsideAndFromInside) {
     const TriangleSurface ball(ball_mesh(3), smooth, 0.1);
     EXPECT_EQ(ball.part_count(), 1);
-    Random random;
+    RandomValues random(3);
     for (int sample = 0; sample < 3000; ++sample) {
         Vector3<> direction = random.vector(1);
         direction = (1 / norm(direction)) * direction;
@@ -259,7 +236,7 @@ TEST(TriangleSheets, NearFindsAllTriangles) {
     mesh.triangles.push_back({base, base + 1, base + 2});
     for (const double usual_reach : {0.01, 0.2, 2.0}) {
         const TriangleSurface surface(mesh, smooth, usual_reach);
-        Random random;
+        RandomValues random(3);
         std::vector<std::uint32_t> found, all(mesh.triangles.size());
         for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
         for (int sample = 0; sample < 500; ++sample) {

@@ -5,6 +5,7 @@
 
 #include "physics/dem/laws/elasticity.hpp"
 #include "physics/dem/laws/friction.hpp"
+#include "physics/dem/laws/no_resistance.hpp"
 #include "physics/dem/laws/rolling.hpp"
 #include "physics/dem/laws/surface_force.hpp"
 #include "physics/dem/laws/twisting.hpp"

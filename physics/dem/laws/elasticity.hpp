@@ -68,7 +68,7 @@ struct HertzSpring {
     Real least_force;              ///< as for LinearSpring [N]
 
     ElasticResponse<Real> operator()(const ContactKinematics<Real>& k, const Real&) const {
-        using std::max, std::sqrt;
+        using std::max, std::min, std::sqrt;
         const Real overlap = max(k.overlap, Real(0.0)), approach = -dot(k.velocity, k.normal);
         const Real radius = sqrt(k.effective_radius * overlap);
         const Real stiffness = (4.0 / 3.0) * effective_modulus * radius;
@@ -83,8 +83,9 @@ struct HertzSpring {
         r.contact_radius = radius;
         r.earlier_stiffness = Real(1.0);
         if constexpr (keeps_force) {
-            const Real earlier = max(overlap - max(approach * k.time_step, Real(0.0)), Real(0.0));
-            r.earlier_stiffness = sqrt(earlier / max(overlap, Real(1e-300)));
+            // sqrt(1 - growth/overlap) to third order; a contact that begins has nothing to keep.
+            const Real growth = min(max(approach * k.time_step, Real(0.0)), overlap);
+            r.earlier_stiffness = (overlap - 0.75 * growth) / max(overlap - 0.25 * growth, Real(1e-300));
         }
         return r;
     }

@@ -10,26 +10,12 @@ namespace talus::dem {
 /// the normal, and into the tangential plane of now without a change of its length.
 template <class Real>
 Vector3<Real> turned_with_contact(const Vector3<Real>& stored, const ContactKinematics<Real>& k) {
-    using std::sqrt, std::max;
-    const Real angle = 0.5 * k.time_step * dot(k.summed_angular_velocity, k.normal);
-    const Vector3<Real> turned = tangential_part(stored + angle * cross(k.normal, stored), k.normal);
-    const Real before = dot(stored, stored), after = dot(turned, turned);
-    return sqrt(before / max(after, Real(1e-300))) * turned;
+    return turned_into_plane(stored, k.normal, 0.5 * k.time_step * dot(k.summed_angular_velocity, k.normal));
 }
 
-/// No friction.
-template <class Real = double>
-struct Frictionless {
-    static constexpr std::size_t history_count = 0;
-    Vector3<Real> operator()(const ContactKinematics<Real>&, const ElasticResponse<Real>&, const Real&,
-                             Real*) const {
-        return {};
-    }
-};
-
-/// Coulomb's friction with a tangential spring and dashpot: F_t = -k_t xi - gamma_t v_t, |F_t| <= mu F_n;
-/// where the cap is reached the spring keeps the length that carries it. P. A. Cundall, O. D. L. Strack,
-/// Geotechnique 29 (1979) 47.
+/// Coulomb's friction with a tangential spring and dashpot: F_t = -k_t xi - gamma_t v_t, |F_t| <= mu F_n.
+/// Where the cap is reached spring and dashpot are cut by the same share, so that the spring never bears more
+/// than what is left of the cap by the dashpot. P. A. Cundall, O. D. L. Strack, Geotechnique 29 (1979) 47.
 template <class Real = double>
 struct CoulombFriction {
     static constexpr std::size_t history_count = 3;  ///< tangential displacement [m]
@@ -46,9 +32,8 @@ struct CoulombFriction {
         const Vector3<Real> trial =
             -(elastic.tangential_stiffness * spring) - elastic.tangential_damping * slip;
         const Real cap = coefficient * max(load, Real(0.0));
-        const Real trial_force = max(norm(trial), Real(1e-300)), share = min(cap / trial_force, Real(1.0));
-        const Real spring_force = max(elastic.tangential_stiffness * norm(spring), Real(1e-300));
-        spring = min(cap / spring_force, Real(1.0)) * spring;
+        const Real share = min(cap / max(norm(trial), Real(1e-300)), Real(1.0));
+        spring = share * spring;
         history[0] = spring.x;
         history[1] = spring.y;
         history[2] = spring.z;

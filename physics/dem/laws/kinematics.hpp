@@ -65,8 +65,11 @@ ContactKinematics<Real> grain_kinematics(const Vector3<Real>& separation, const 
     k.velocity = first.velocity - second.velocity - cross(turning, k.normal);
     k.angular_velocity = first.angular_velocity - second.angular_velocity;
     k.summed_angular_velocity = first.angular_velocity + second.angular_velocity;
-    k.effective_radius = first.radius * second.radius / (first.radius + second.radius);
-    k.effective_mass = first.mass * second.mass / (first.mass + second.mass);
+    // One division for both.
+    const Real radii = first.radius + second.radius, masses = first.mass + second.mass;
+    const Real inverse = 1 / (radii * masses);
+    k.effective_radius = first.radius * second.radius * (masses * inverse);
+    k.effective_mass = first.mass * second.mass * (radii * inverse);
     const Real inertia_1 = 1.4 * first.mass * first.radius * first.radius;
     const Real inertia_2 = 1.4 * second.mass * second.radius * second.radius;
     k.effective_inertia = inertia_1 * inertia_2 / (inertia_1 + inertia_2);

@@ -6,16 +6,6 @@
 
 namespace talus::dem {
 
-/// No rolling resistance.
-template <class Real = double>
-struct RollsFreely {
-    static constexpr std::size_t history_count = 0;
-    Vector3<Real> operator()(const ContactKinematics<Real>&, const ElasticResponse<Real>&, const Real&,
-                             Real*) const {
-        return {};
-    }
-};
-
 /// A torque mu_r R* F_n against the relative rolling, whatever its speed; swings about zero where a grain
 /// comes to rest. Model A of J. Ai, J.-F. Chen, J. M. Rotter, J. Y. Ooi, Powder Technol. 206 (2011) 269.
 template <class Real = double>

@@ -6,16 +6,6 @@
 
 namespace talus::dem {
 
-/// No twisting resistance.
-template <class Real = double>
-struct TwistsFreely {
-    static constexpr std::size_t history_count = 0;
-    Vector3<Real> operator()(const ContactKinematics<Real>&, const ElasticResponse<Real>&, const Real&,
-                             Real*) const {
-        return {};
-    }
-};
-
 /// Resistance of the contact area against relative spin about the normal: spring k_t a^2 / 2 and dashpot
 /// gamma_t a^2 / 2, at most 2/3 a mu F_n. J. S. Marshall, J. Comput. Phys. 228 (2009) 1541, eqs 31-33.
 template <class Real = double>
