@@ -3,10 +3,8 @@
 
 namespace talus::field {
 
-/// Fields of grains and of their contacts; see fields.hpp.
-inline constexpr Field<double> radius{"radius", "m", scalar, state, halo, "radius of the grain"};
-inline constexpr Field<double> angular_velocity{"angular_velocity", "rad s-1", vector, state, owner,
-                                                "angular velocity"};
+// Fields of grains and of their contacts, besides those of fields.hpp.
+
 inline constexpr Field<double> angular_acceleration{
     "angular_acceleration", "rad s-2", vector, state, owner, "angular acceleration at the last evaluation"};
 inline constexpr Field<double> predicted_angular_velocity{
