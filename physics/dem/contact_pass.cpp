@@ -84,8 +84,9 @@ class PairLoop {
     }
 
   private:
-    /// Returns the first lane with an overload, lane_count if there is none.
-    std::size_t contacts(const std::uint32_t* touching, std::size_t count) {
+    /// Returns the first lane with an overload, lane_count if there is none. Flat: vectors of lanes that are
+    /// handed to functions go through memory.
+    [[gnu::flatten]] std::size_t contacts(const std::uint32_t* touching, std::size_t count) {
         std::array<std::uint32_t, lane_count> pair;
         GrainRows::Pointers rows_a, rows_b;
         for (std::size_t lane = 0; lane < lane_count; ++lane) {

@@ -48,9 +48,10 @@ void predict(ParticleSet& grains, double time_step, const Field<double>& velocit
     }
 }
 
-void kick(double* velocity, double* acceleration, double now, double half_step) {
-    *velocity += half_step * (*acceleration + now);
-    *acceleration = now;
+/// The components of a field to change.
+using Components = std::array<double*, 3>;
+Components components(ParticleSet& grains, const Field<double>& field) {
+    return {grains.data(field, 0), grains.data(field, 1), grains.data(field, 2)};
 }
 
 }  // namespace
@@ -63,27 +64,30 @@ void predict(ParticleSet& grains, double time_step) {
 
 double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, double kick_step, double time_step) {
-    const double half_step = 0.5 * kick_step;
+    const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
     const std::array<double, 3> g{gravity.x, gravity.y, gravity.z};
-    std::vector<double> moved2(grains.size(), 0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const double *x = grains.data(field::position, axis), *start = responses.start[a].data();
-        double *v = grains.data(field::velocity, axis), *dv = grains.data(field::acceleration, axis);
-        double *w = grains.data(field::angular_velocity, axis),
-               *dw = grains.data(field::angular_acceleration, axis);
-        for (std::size_t i = 0; i < grains.size(); ++i) {
-            const double response = responses.acceleration[i];
-            kick(v + i, dv + i,
-                 static_cast<double>(sums[i].force[a]) * response + (response > 0 ? g[a] : 0.0), half_step);
-            kick(w + i, dw + i, static_cast<double>(sums[i].torque[a]) * responses.angular[i], half_step);
-            const double moved = x[i] + time_step * (v[i] + 0.5 * time_step * dv[i]) - start[i];
-            moved2[i] += moved * moved;
+    const Components x = components(grains, field::position), v = components(grains, field::velocity),
+                     dv = components(grains, field::acceleration),
+                     w = components(grains, field::angular_velocity),
+                     dw = components(grains, field::angular_acceleration);
+    double most2 = 0;
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+        const double response = responses.acceleration[i], angular = responses.angular[i];
+        double moved2 = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double now = static_cast<double>(sums[i].force[a]) * response + (response > 0 ? g[a] : 0.0);
+            const double velocity = v[a][i] + half_kick * (dv[a][i] + now);
+            const double turn = static_cast<double>(sums[i].torque[a]) * angular;
+            w[a][i] += half_kick * (dw[a][i] + turn);
+            v[a][i] = velocity;
+            dv[a][i] = now;
+            dw[a][i] = turn;
+            const double moved = x[a][i] + time_step * (velocity + half_step * now) - responses.start[a][i];
+            moved2 += moved * moved;
         }
+        most2 = std::max(most2, moved2);
     }
-    double most = 0;
-    for (const double m : moved2) most = std::max(most, m);
-    return most;
+    return most2;
 }
 
 }  // namespace talus::dem

@@ -13,7 +13,6 @@ namespace talus {
 int check_grain_scene(const Communicator& comm, const Scene& scene) {
     GrainEvolution evolution(comm, scene, {});
     evolution.create({});
-    evolution.start();
     constexpr int steps = 5;
     const auto began = std::chrono::steady_clock::now();
     for (int k = 0; k < steps; ++k) evolution.step();

@@ -33,18 +33,15 @@ std::vector<std::string> GrainEvolution::warnings() const {
 }
 
 void GrainEvolution::create(const std::function<void()>&) {
-    simulation_.emplace(comm_, setup_.simulation, make_grains(comm_, setup_));
-}
-
-void GrainEvolution::start() {
     constexpr double most = 0.2;  // of the smaller radius
+    simulation_.emplace(comm_, setup_.simulation, make_grains(comm_, setup_));
     simulation_->start();
     first_overlap_ = simulation_->totals().greatest_overlap;
     if (first_overlap_ > most)
-        scene_.root().error("grains",
-                            fmt::format("grains overlap at the start, by up to {:.3g} of the smaller radius; "
-                                        "allowed: {}",
-                                        first_overlap_, most));
+        scene_.root().error(
+            "grains",
+            fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; allowed: {}",
+                        first_overlap_, most));
     scene_.finish();
 }
 

@@ -19,7 +19,7 @@ class GrainEvolution : public Evolution {
     void create(const std::function<void()>& check_stop) override;
     ReadCheckpoint read(const std::filesystem::path& what,
                         const std::filesystem::path& output_folder) override;
-    void start() override;
+    void start() override {}  // create() does: overlaps are known only then
     void resume(const RunState& state) override;
     void step() override { simulation_->step(); }
     double time() const override { return simulation_->time(); }

@@ -78,16 +78,21 @@ TEST(SetupGrains, ReadsAScene) {
 
 TEST(SetupGrains, RefusesWhatCannotBe) {
     expect_fault("restitution = 0.6", "restitution = 1.5", "s.toml:9: materials.glass.restitution = 1.5");
-    expect_fault("youngs_modulus = 1e8", "youngs_modulus = 0", "s.toml:7: materials.glass.youngs_modulus = 0");
+    expect_fault("youngs_modulus = 1e8", "youngs_modulus = 0",
+                 "s.toml:7: materials.glass.youngs_modulus = 0");
     expect_fault("time_step = 3e-6", "time_step = 3e-5", "s.toml:13: dem.time_step");
-    expect_fault("time_step = 3e-6", "time_step = 3e-5", "0.3 of the time in which a Rayleigh wave crosses a grain of 0.001 m");
+    expect_fault("time_step = 3e-6", "time_step = 3e-5",
+                 "0.3 of the time in which a Rayleigh wave crosses a grain of 0.001 m");
     expect_fault("gravity =", "law = \"linear\"\nstiffness = 0\ngravity =", "dem.stiffness = 0");
     expect_fault("normal = [0, 0, 2]", "normal = [0, 1, 2]", "must be 0 along y, where the box is periodic");
     expect_fault("upper = [0.1, 0.1, 0]", "upper = [0.1, 0.004, 0]", "two diameters of the largest grain");
-    expect_fault("\"periodic\", \"open\"", "\"reflecting\", \"open\"", "grains know open and periodic boundaries");
-    expect_fault("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"", "[[wall]]\nname = \"floor\"\nmaterial = \"glas\"", "there is no table [materials.glas]");
+    expect_fault("\"periodic\", \"open\"", "\"reflecting\", \"open\"",
+                 "grains know open and periodic boundaries");
+    expect_fault("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"",
+                 "[[wall]]\nname = \"floor\"\nmaterial = \"glas\"", "there is no table [materials.glas]");
     expect_fault("radius = 0.001", "radius = 0.001\nrolling_friction = 1", "rolling_friction");
-    expect_fault("[[wall]]", "[[contact]]\nmaterials = [\"glass\", \"steel\"]\n[[wall]]", "no grains and no wall are of 'steel'");
+    expect_fault("[[wall]]", "[[contact]]\nmaterials = [\"glass\", \"steel\"]\n[[wall]]",
+                 "no grains and no wall are of 'steel'");
 }
 
 }  // namespace
