@@ -12,7 +12,7 @@ namespace {
 constexpr const char* scene_text = R"([box]
 boundaries = ["periodic", "periodic", "open"]
 lower = [0, 0, 0]
-upper = [0.1, 0.1, 0]
+upper = [0.1, 0.1, 1]
 [materials.glass]
 density = 2500
 youngs_modulus = 1e8
@@ -85,7 +85,7 @@ TEST(SetupGrains, RefusesWhatCannotBe) {
                  "0.3 of the time in which a Rayleigh wave crosses a grain of 0.001 m");
     expect_fault("gravity =", "law = \"linear\"\nstiffness = 0\ngravity =", "dem.stiffness = 0");
     expect_fault("normal = [0, 0, 2]", "normal = [0, 1, 2]", "must be 0 along y, where the box is periodic");
-    expect_fault("upper = [0.1, 0.1, 0]", "upper = [0.1, 0.004, 0]", "two diameters of the largest grain");
+    expect_fault("upper = [0.1, 0.1, 1]", "upper = [0.1, 0.004, 1]", "two diameters of the largest grain");
     expect_fault("\"periodic\", \"open\"", "\"reflecting\", \"open\"",
                  "grains know open and periodic boundaries");
     expect_fault("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"",
