@@ -27,7 +27,7 @@ struct GrainSetup {
     dem::Vector3<> gravity;  ///< [m s-2]
     double time_step = 0;    ///< the same throughout [s]
     double skin = 0;         ///< gap up to which pairs are listed [m]; no result depends on it
-    PartitionMethod partition = PartitionMethod::metis;
+    PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };
 

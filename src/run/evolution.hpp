@@ -67,6 +67,8 @@ class Evolution {
     /// Pairs evaluated by this rank since the counters were reset.
     virtual std::uint64_t pairs() const = 0;
     virtual void reset_counters() = 0;
+    /// Work of this rank at the last evaluation, in any unit.
+    virtual double work() const = 0;
 
     /// Adds to a checkpoint's state what it must know besides time and particles.
     virtual void describe(RunState& state) const = 0;

@@ -31,6 +31,7 @@ class GrainEvolution : public Evolution {
     Phases& phases() override { return simulation_->phases(); }
     std::uint64_t pairs() const override { return simulation_->evaluated_contacts(); }
     void reset_counters() override { simulation_->reset_counters(); }
+    double work() const override { return static_cast<double>(simulation_->grains().size()); }
     void describe(RunState& state) const override;
     void save(const WriteSets& write) override;
     std::vector<SnapshotField> snapshot_fields() const override;

@@ -14,6 +14,7 @@
 #include "io/csv.hpp"
 #include "io/progress.hpp"
 #include "io/snapshot.hpp"
+#include "src/run/performance_log.hpp"
 
 namespace talus {
 
@@ -74,6 +75,7 @@ std::filesystem::path set_aside(const std::filesystem::path& folder, const std::
 struct Recorder::Files {
     std::shared_ptr<spdlog::logger> log;
     std::unique_ptr<CsvWriter> diagnostics;
+    std::unique_ptr<PerformanceLog> performance;
     std::unique_ptr<Progress> progress;
 };
 
@@ -126,9 +128,11 @@ void Recorder::begin(Evolution& evolution, double end_time) {
             for (const std::string& note : evolution.preparations()) files_->log->info("{}", note);
         for (const std::string& warning : evolution.warnings()) files_->log->warn("note: {}", warning);
     }
-    files_->diagnostics = std::make_unique<CsvWriter>(
-        comm_, folder_ / "diagnostics.csv", evolution.diagnostics_columns(),
-        is_new_ ? std::nullopt : std::optional<std::uint64_t>(evolution.step_count()));
+    const std::optional<std::uint64_t> restart_step =
+        is_new_ ? std::nullopt : std::optional<std::uint64_t>(evolution.step_count());
+    files_->diagnostics = std::make_unique<CsvWriter>(comm_, folder_ / "diagnostics.csv",
+                                                      evolution.diagnostics_columns(), restart_step);
+    files_->performance = std::make_unique<PerformanceLog>(comm_, folder_, restart_step);
     if (is_new_) {
         write_diagnostics(evolution);
         write_snapshot_now(evolution, 0);
@@ -136,13 +140,17 @@ void Recorder::begin(Evolution& evolution, double end_time) {
     }
     files_->progress = std::make_unique<Progress>(comm_.is_root(), Progress::Goal{end_time, {}});
     evolution.reset_counters();
+    files_->performance->begin(evolution);
     began_ = step_began_ = last_checkpoint_time_ = std::chrono::steady_clock::now();
 }
 
 void Recorder::after_step(Evolution& evolution) {
     const double time = evolution.time();
     evolution.phases().enter(Phase::output);
-    if (fell_due(time_before_, time, output_.diagnostics_interval)) write_diagnostics(evolution);
+    if (fell_due(time_before_, time, output_.diagnostics_interval)) {
+        write_diagnostics(evolution);
+        files_->performance->write(evolution);
+    }
     if (const double interval = output_.snapshot_interval;
         interval > 0 && fell_due(time_before_, time, interval))
         write_snapshot_now(evolution, static_cast<std::uint64_t>(time / interval));
@@ -263,6 +271,7 @@ void Recorder::write_performance(const Evolution& evolution, const PhaseTimer& t
 }
 
 void Recorder::print_summary(Evolution& evolution) {
+    files_->performance->write(evolution);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
     PhaseTimer timer;
     for (std::size_t p = 0; p < phase_names.size(); ++p)

@@ -36,6 +36,7 @@ class SphEvolution : public Evolution {
         simulation_->reset_counters();
         counted_from_ = step_count();
     }
+    double work() const override { return simulation_->work(); }
     void describe(RunState& state) const override;
     void save(const WriteSets& write) override { write({&simulation_->particles()}); }
     std::vector<SnapshotField> snapshot_fields() const override;

@@ -51,11 +51,12 @@ OutputPlan read_output(const Section& root) {
 
 PartitionMethod read_partition(const Section& table) {
     const std::string name =
-        table.choice("decomposition", {"metis", "bisection", "slabs", "scrambled"}, "metis");
+        table.choice("decomposition", {"cheapest", "metis", "bisection", "slabs", "scrambled"}, "cheapest");
+    if (name == "metis") return PartitionMethod::metis;
     if (name == "bisection") return PartitionMethod::bisection;
     if (name == "slabs") return PartitionMethod::slabs;
     if (name == "scrambled") return PartitionMethod::scrambled;
-    return PartitionMethod::metis;
+    return PartitionMethod::cheapest;
 }
 
 int read_rebalance_interval(const Section& run) {
