@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "io/csv.hpp"
-#include "src/evolution.hpp"
+#include "src/run/evolution.hpp"
 
 namespace talus {
 
