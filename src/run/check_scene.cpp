@@ -11,6 +11,7 @@
 #include "src/run/commands.hpp"
 #include "src/run/scene_checks.hpp"
 #include "src/run/warnings.hpp"
+#include "src/setup/grain_scene.hpp"
 #include "src/setup/scene_setup.hpp"
 
 namespace talus {
@@ -114,6 +115,7 @@ double measured_step_seconds(Simulation& simulation) {
 
 int check_scene(const Communicator& comm, const RunOptions& options) {
     const Scene scene = load_scene(comm, options);
+    if (is_grain_scene(scene)) return check_grain_scene(comm, scene);
     const SceneSetup setup = read_scene(comm, scene);
     check_plan(scene, setup, setup.output.end_time);
     Memory memory{static_cast<double>(comm.all_max(peak_memory())), 0};

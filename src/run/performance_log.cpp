@@ -45,16 +45,16 @@ PerformanceLog::PerformanceLog(const Communicator& comm, const std::filesystem::
                                std::optional<std::uint64_t> restart_step)
     : comm_(comm), table_(comm, folder / "performance.csv", performance_columns(), restart_step) {}
 
-PerformanceLog::Counters PerformanceLog::counters_of(const Simulation& simulation) {
-    return {simulation.step_count(), simulation.phases().seconds(),
-            static_cast<double>(simulation.decomposition().halo().bytes_sent())};
+PerformanceLog::Counters PerformanceLog::counters_of(Evolution& evolution) {
+    return {evolution.step_count(), evolution.phases().seconds(),
+            static_cast<double>(evolution.decomposition().halo().bytes_sent())};
 }
 
-void PerformanceLog::write(const Simulation& simulation) {
-    const Counters now = counters_of(simulation);
+void PerformanceLog::write(Evolution& evolution) {
+    const Counters now = counters_of(evolution);
     if (now.step == last_.step) return;
-    std::vector<double> mine = {simulation.work(), now.halo_bytes - last_.halo_bytes,
-                                static_cast<double>(simulation.particles().halo_size())};
+    std::vector<double> mine = {evolution.work(), now.halo_bytes - last_.halo_bytes,
+                                static_cast<double>(evolution.particles().halo_size())};
     const std::size_t first_phase = mine.size();
     for (std::size_t p = 0; p < now.seconds.size(); ++p) mine.push_back(now.seconds[p] - last_.seconds[p]);
     last_ = now;
@@ -70,13 +70,13 @@ void PerformanceLog::write(const Simulation& simulation) {
     const auto greatest = [&](std::size_t k) {
         return std::ranges::max(of_ranks([k](std::span<const double> rank) { return rank[k]; }));
     };
-    std::vector<double> row = {simulation.time(),
+    std::vector<double> row = {evolution.time(),
                                static_cast<double>(ranks),
                                imbalance_of(of_ranks([](std::span<const double> rank) { return rank[0]; })),
                                imbalance_of(of_ranks([&](std::span<const double> rank) {
                                    return computing(rank.subspan(first_phase));
                                })),
-                               static_cast<double>(simulation.decomposition().rebalance_count()),
+                               static_cast<double>(evolution.decomposition().rebalance_count()),
                                greatest(2),
                                greatest(1)};
     for (std::size_t k = first_phase; k < mine.size(); ++k) {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "io/csv.hpp"
-#include "src/simulation.hpp"
+#include "src/run/evolution.hpp"
 
 namespace talus {
 
@@ -18,9 +18,9 @@ class PerformanceLog {
                    std::optional<std::uint64_t> restart_step);
 
     /// Counts from here on, without a row.
-    void begin(const Simulation& simulation) { last_ = counters_of(simulation); }
+    void begin(Evolution& evolution) { last_ = counters_of(evolution); }
     /// Adds a row for the steps since the last call, if there were any. Collective.
-    void write(const Simulation& simulation);
+    void write(Evolution& evolution);
 
   private:
     struct Counters {
@@ -28,7 +28,7 @@ class PerformanceLog {
         std::array<double, phase_names.size()> seconds{};
         double halo_bytes = 0;
     };
-    static Counters counters_of(const Simulation& simulation);
+    static Counters counters_of(Evolution& evolution);
 
     const Communicator& comm_;
     CsvWriter table_;

@@ -3,12 +3,9 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "io/scene.hpp"
-#include "src/run/restart.hpp"
-#include "src/setup/scene_setup.hpp"
-#include "src/simulation.hpp"
+#include "src/run/evolution.hpp"
 
 namespace talus {
 
@@ -19,29 +16,27 @@ class Recorder {
   public:
     /// Makes the folder. A new run that finds another run's results there moves them to `folder`.1, .2, ...
     Recorder(const Communicator& comm, std::filesystem::path folder, const Scene& scene,
-             const SceneSetup& setup, bool is_new);
+             const OutputPlan& output, bool is_new);
     ~Recorder();
 
     const std::filesystem::path& folder() const { return folder_; }
 
     /// Notes that the run is not new: it goes on from the state of a checkpoint.
-    void go_on_from(const Restart& restart);
-    /// Notes how the bodies came to rest before the start.
-    void note(const std::vector<Settling>& settlings);
+    void go_on_from(const ReadCheckpoint& restart);
     /// Before the first step: describes the run, and for a new one writes its first state.
-    void begin(Simulation& simulation, double end_time);
-    void after_step(Simulation& simulation);
+    void begin(Evolution& evolution, double end_time);
+    void after_step(Evolution& evolution);
     /// Writes a checkpoint because of `why`.
-    void stop_early(Simulation& simulation, const std::string& why);
+    void stop_early(Evolution& evolution, const std::string& why);
     /// Writes the last state and what the scene wants to know of it; prints the table of time per phase.
-    void finish(Simulation& simulation);
+    void finish(Evolution& evolution);
 
-    /// Writes the grains that the run ends with, `folder`/grains.h5.
-    void hand_over(const Simulation& simulation, const HandOff& result);
+    /// Writes what other models go on from, if the scene asks for it and the time has come.
+    void hand_over(const Evolution& evolution);
 
     /// After a failure of step(): keeps the state that failed in `folder`/failed for a look with `talus
     /// info`, and says where it is and where to go on from.
-    std::string after_failure(const Simulation& simulation);
+    std::string after_failure(Evolution& evolution);
     /// Longest wall time of a step so far [s].
     double longest_step() const { return longest_step_; }
     /// Wall time of writing the last checkpoint, or of reading the one that the run goes on from [s].
@@ -50,18 +45,18 @@ class Recorder {
   private:
     struct Files;
 
-    void write_checkpoint_now(Simulation& simulation);
-    void write_snapshot_now(Simulation& simulation, std::uint64_t index);
-    void write_analysis(const Simulation& simulation);
-    void write_diagnostics(Simulation& simulation);
-    void print_summary(Simulation& simulation);
-    void write_performance(const Simulation& simulation, const class PhaseTimer& timer, double seconds,
+    void write_checkpoint_now(Evolution& evolution);
+    void write_snapshot_now(Evolution& evolution, std::uint64_t index);
+    void write_analysis(const Evolution& evolution);
+    void write_diagnostics(Evolution& evolution);
+    void print_summary(Evolution& evolution);
+    void write_performance(const Evolution& evolution, const class PhaseTimer& timer, double seconds,
                            std::uint64_t pairs);
 
     const Communicator& comm_;
     std::filesystem::path folder_;
     const Scene& scene_;
-    const SceneSetup& setup_;
+    const OutputPlan& output_;
     bool is_new_;
     std::unique_ptr<Files> files_;
     std::filesystem::path last_checkpoint_;

@@ -33,7 +33,7 @@ void refuse_bad_vertices(const std::string& text) {
 
 }  // namespace
 
-Polyhedron parse_obj(const std::string& text) {
+Polyhedron parse_obj_faces(const std::string& text) {
     refuse_bad_vertices(text);
     tinyobj::ObjReaderConfig config;
     config.vertex_color = false;
@@ -60,9 +60,15 @@ Polyhedron parse_obj(const std::string& text) {
                         fmt::format("a face names vertex {}, but there are {}", index + 1, vertex_of.size()));
                 triangle[corner] = vertex_of[static_cast<std::size_t>(index)];
             }
-            if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
-                surface.triangles.push_back(triangle);
+            surface.triangles.push_back(triangle);
         }
+    return surface;
+}
+
+Polyhedron parse_obj(const std::string& text) {
+    Polyhedron surface = parse_obj_faces(text);
+    std::erase_if(surface.triangles,
+                  [](const Polyhedron::Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
     if (const std::string why = why_not_closed(surface); !why.empty()) throw ShapeError(why);
     const double volume = integrate(surface).volume;
     if (volume == 0) throw ShapeError("encloses no volume");

@@ -12,6 +12,10 @@ class ShapeError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The faces in the text of a Wavefront OBJ file as they are, in the file's unit: polygons are cut into
+/// triangles and equal vertices made one. Throws ShapeError if the text cannot be read.
+Polyhedron parse_obj_faces(const std::string& text);
+
 /// The surface in the text of a Wavefront OBJ file, in the file's unit: polygons are cut into triangles,
 /// equal vertices made one, faces without area left out, and a surface seen from inside is turned inside out.
 /// Throws ShapeError, saying what is wrong and where, if the text cannot be read or the surface is not

@@ -9,6 +9,7 @@
 #include "src/setup/gravity_reader.hpp"
 #include "src/setup/impact_reader.hpp"
 #include "src/setup/material_reader.hpp"
+#include "src/setup/run_reader.hpp"
 
 namespace talus {
 
@@ -16,38 +17,6 @@ namespace {
 
 constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
 constexpr Range not_negative{0};
-
-Box read_box(const Section& table, int dimension) {
-    Box box;
-    box.dimension = dimension;
-    const auto count = static_cast<std::size_t>(dimension);
-    const std::vector<std::string> kinds =
-        table.texts("boundaries", count, std::vector<std::string>(count, "open"));
-    bool closed = false;
-    for (std::size_t a = 0; a < std::min(count, kinds.size()); ++a) {
-        if (kinds[a] == "periodic")
-            box.boundary[a] = Boundary::periodic;
-        else if (kinds[a] == "reflecting")
-            box.boundary[a] = Boundary::reflecting;
-        else if (kinds[a] != "open")
-            table.error(
-                "boundaries",
-                fmt::format("'{}' is not a boundary (allowed: open, periodic, reflecting)", kinds[a]));
-        closed |= box.boundary[a] != Boundary::open;
-    }
-    if (!closed && !table.has("lower") && !table.has("upper")) return box;
-    const std::vector<double> lower = table.numbers("lower", "m", count),
-                              upper = table.numbers("upper", "m", count);
-    for (std::size_t a = 0; a < count && a < lower.size() && a < upper.size(); ++a) {
-        box.lower[a] = lower[a];
-        box.upper[a] = upper[a];
-        if (!(lower[a] < upper[a])) {
-            table.error("upper", fmt::format("must be above lower along {}", "xyz"[a]));
-            box.upper[a] = lower[a] + 1;
-        }
-    }
-    return box;
-}
 
 sph::KernelKind kernel_named(const std::string& name) {
     if (name == "cubic_spline") return sph::KernelKind::cubic_spline;
@@ -136,16 +105,6 @@ std::optional<LatePhase> read_late_phase(const Section& root, const Setup& simul
                 "", fmt::format("'{}' is an ideal gas, which has no stiffness of its own", material.name));
     return LatePhase{.from = table.number("from", "s", {}, not_negative),
                      .stiffness = table.number("stiffness", "1", 0.01, {0, 1, true})};
-}
-
-PartitionMethod read_partition(const Section& table) {
-    const std::string name =
-        table.choice("decomposition", {"cheapest", "metis", "bisection", "slabs", "scrambled"}, "cheapest");
-    if (name == "metis") return PartitionMethod::metis;
-    if (name == "bisection") return PartitionMethod::bisection;
-    if (name == "slabs") return PartitionMethod::slabs;
-    if (name == "scrambled") return PartitionMethod::scrambled;
-    return PartitionMethod::cheapest;
 }
 
 void refuse_outside(const Section& table, const Body& body, const Box& box) {
@@ -267,17 +226,13 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.simulation.late_phase = read_late_phase(root, setup.simulation);
     setup.settle = read_settle(root, setup.bodies, setup.simulation);
     const Section run = root.section("run");
-    setup.output.end_time = run.number("end_time", "s", {}, positive);
+    setup.output = read_output(root);
     setup.simulation.first_time_step = run.has("first_time_step")
                                            ? run.number("first_time_step", "s", {}, positive)
                                            : std::numeric_limits<double>::infinity();
     setup.simulation.largest_damage_step = run.number("largest_damage_step", "1", 0.1, {0, 1, true});
     setup.simulation.partition = read_partition(run);
-    setup.simulation.rebalance_interval = static_cast<int>(run.integer("rebalance_interval", 10, 0, 1000000));
-    const Section output = root.section("output");
-    setup.output.snapshot_interval = output.number("snapshots", "s", 0.0, not_negative);
-    setup.output.diagnostics_interval = output.number("diagnostics", "s", 0.0, not_negative);
-    setup.output.checkpoint_interval = output.number("checkpoints", "s", 1800.0, not_negative);
+    setup.simulation.rebalance_interval = read_rebalance_interval(run);
     setup.analysis = read_analysis(root.section("analysis"), setup.bodies, setup.simulation);
     setup.hand_off = read_hand_off(root, setup.bodies, setup.simulation, setup.output.end_time);
     scene.finish();

@@ -308,6 +308,43 @@ class DamagedCheckpoints(Case):
         self.assertEqual(self.hash(self.folder), before)
 
 
+class Grains(Case):
+    SOFT = """[materials.jelly]
+density = 2500
+youngs_modulus = 1e4
+poisson_ratio = 0.3
+restitution = 0.9
+friction = 0.1
+[[grains]]
+material = "jelly"
+file = "grains.csv"
+[[wall]]
+name = "crate"
+kind = "container"
+material = "jelly"
+lower = [0, 0, 0]
+upper = [1, 1, 1]
+[run]
+end_time = 0.1
+"""
+
+    def run_grains(self, rows):
+        (self.folder / "grains.csv").write_text("# x, y, z, radius, velocity\n" + rows)
+        return talus("run", self.scene(self.SOFT), "--out", self.out)
+
+    def test_a_grain_that_leaves_through_a_wall_stops_the_run(self):
+        done = self.run_grains("0.5,0.5,0.5,0.01,0,0,0\n0.2,0.5,0.98,0.01,0,0,50\n")
+        self.assert_fails(done, 1, r"grain 1 at \(0\.2, 0\.5, 1\..*\) m has left through wall 'crate'", "last checkpoint")
+
+    def test_overlapping_grains_are_refused_with_their_depth(self):
+        done = self.run_grains("0.5,0.5,0.5,0.01\n0.51,0.5,0.5,0.01\n")
+        self.assert_fails(done, 2, r"scene\.toml:7: grains.*overlap at the start, by up to 1 of the smaller radius; allowed: 0\.2")
+
+    def test_a_list_of_grains_names_its_bad_line(self):
+        done = self.run_grains("0.5,0.5,0.5,0.01\n0.5,0.5,0.5\n")
+        self.assert_fails(done, 2, r"grains\.csv:3: not a row x,y,z,radius")
+
+
 class PerformanceTable(Case):
     def rows(self):
         lines = (self.out / "performance.csv").read_text().splitlines()

@@ -18,6 +18,9 @@ TO_THE_END = {"asteroid_collision": 200}  # scenes that run to their end, and th
 MAPS = {1: "metis", 2: "metis", 3: "scrambled", 5: "slabs", 8: "metis"}  # of each number of ranks
 
 
+STEPS_OF_GRAINS = 20  # times as many: theirs are short
+
+
 class Runner:
     def __init__(self, program, mpirun, folder):
         self.program, self.mpirun, self.folder, self.count = program, mpirun, folder, 0
@@ -60,6 +63,13 @@ def remnants_asked(scene):
     return ["--set", "analysis.remnants=true"] if is_analysed(scene) else []
 
 
+def steps_and_stop(scene):
+    if scene.name in TO_THE_END:
+        return None, TO_THE_END[scene.name]
+    times = STEPS_OF_GRAINS if "grains" in tomllib.loads((scene / "scene.toml").read_text()) else 1
+    return times * STEPS, times * STOP
+
+
 def findings(out):
     """What the analysis wrote, but the snapshot of remnants: it holds the scene with the decomposition's name."""
     names = ("analysis.json", "fragments.csv", "distribution.csv")
@@ -67,7 +77,7 @@ def findings(out):
 
 
 def check(runner, scene):
-    steps, stop = (None, TO_THE_END[scene.name]) if scene.name in TO_THE_END else (STEPS, STOP)
+    steps, stop = steps_and_stop(scene)
     first = runner.run(scene, steps, 0, "metis")
     reference, found_first = runner.hash(first), findings(first)
     wrong = []

@@ -1,0 +1,31 @@
+#pragma once
+#include "domain/fields.hpp"
+
+namespace talus::field {
+
+// Fields of grains and of their contacts, besides those of fields.hpp.
+
+inline constexpr Field<double> angular_acceleration{
+    "angular_acceleration", "rad s-2", vector, state, owner, "angular acceleration at the last evaluation"};
+inline constexpr Field<double> predicted_angular_velocity{
+    "predicted_angular_velocity",
+    "rad s-1",
+    vector,
+    work,
+    halo,
+    "angular velocity predicted to the time of evaluation"};
+inline constexpr Field<std::uint64_t> copied_id{"copied_id", "1",  scalar,
+                                                work,        halo, "the id, for copies to have it too"};
+inline constexpr Field<std::uint64_t> first_id{
+    "first_id", "1", scalar, state, owner, "lower id of the two grains in contact; the grain at a wall"};
+inline constexpr Field<std::uint64_t> second_id{
+    "second_id", "1",   scalar,
+    state,       owner, "higher id of the two grains in contact; 2^63 + 2^32 wall + place at a wall"};
+inline constexpr Field<double> sliding{
+    "sliding", "m",   vector,
+    state,     owner, "tangential displacement of the contact, as the first grain sees it"};
+inline constexpr Field<double> rolling{
+    "rolling", "rad", vector, state, owner, "rolling angle of the contact, as the first grain sees it"};
+inline constexpr Field<double> twisting{"twisting", "rad", scalar, state, owner, "twist of the contact"};
+
+}  // namespace talus::field

@@ -1,0 +1,39 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "physics/dem/contact_list.hpp"
+#include "physics/dem/force_sum.hpp"
+#include "physics/dem/grain_rows.hpp"
+#include "physics/dem/law_table.hpp"
+
+namespace talus::dem {
+
+/// Which pairs of a list a loop visits: those of own grains can be worked on while copies are on their way.
+enum class Pairs : std::uint8_t { own, with_copies };
+
+/// What all contacts of one evaluation have in common.
+struct Evaluation {
+    const GrainRows& rows;
+    double time_step;   ///< that histories advance by [s]
+    std::uint32_t now;  ///< number of the evaluation; contacts that did not touch at the last begin anew
+    std::span<ForceSum> sums;  ///< of the own grains
+    double largest_radius;     ///< [m]
+};
+
+/// A contact whose force is not finite or beyond what its grains could bear pressed flat.
+struct Overload {
+    bool found = false;
+    std::uint32_t first = 0, second = 0;  ///< grains as stored, or a grain and a wall
+    bool behind = false;                  ///< the grain's centre is behind the wall's surface
+};
+
+/// Greatest gap across which any pair of grains up to a radius may act [m].
+double greatest_reach(const AnyLawTable& laws, double largest_radius);
+
+/// Finds the pairs that touch and adds their forces to both sides, as far as those are own grains. A pair
+/// with a copy is computed by both ranks, with the same bits.
+Overload evaluate_pairs(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
+                        ContactList& list);
+
+}  // namespace talus::dem

@@ -1,0 +1,159 @@
+#include "physics/dem/contact_record.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "domain/grain_fields.hpp"
+
+namespace talus::dem {
+
+ContactRecordMap::ContactRecordMap(std::span<const ContactRecord> records)
+    : records_(records), slots_(std::bit_ceil(2 * records.size() + 2)) {
+    for (std::size_t k = 0; k < records.size(); ++k) {
+        std::uint32_t& slot = slots_[place_of(records[k].first, records[k].second)];
+        if (slot == 0) slot = static_cast<std::uint32_t>(k + 1);
+    }
+}
+
+std::size_t ContactRecordMap::place_of(std::uint64_t first, std::uint64_t second) const {
+    std::uint64_t mixed = (first * 0x9E3779B97F4A7C15u) ^ second;
+    mixed = (mixed ^ mixed >> 29) * 0xBF58476D1CE4E5B9u;
+    std::size_t place = (mixed ^ mixed >> 32) & (slots_.size() - 1);
+    while (slots_[place] != 0) {
+        const ContactRecord& there = records_[slots_[place] - 1];
+        if (there.first == first && there.second == second) break;
+        place = (place + 1) & (slots_.size() - 1);
+    }
+    return place;
+}
+
+const ContactRecord* ContactRecordMap::find(std::uint64_t first, std::uint64_t second) const {
+    const std::uint32_t slot = slots_[place_of(first, second)];
+    return slot == 0 ? nullptr : &records_[slot - 1];
+}
+
+namespace {
+
+using Parcels = std::map<int, std::vector<ContactRecord>>;
+
+/// Records that other ranks sent, appended.
+void exchange(const Communicator& comm, const Parcels& leaving, std::vector<ContactRecord>& records) {
+    std::vector<Parcel> outgoing;
+    for (const auto& [rank, sent] : leaving) {
+        const auto bytes = std::as_bytes(std::span(sent));
+        outgoing.push_back({rank, {bytes.begin(), bytes.end()}});
+    }
+    for (const Parcel& parcel : SparseExchange(comm)(std::move(outgoing))) {
+        const std::size_t before = records.size();
+        records.resize(before + parcel.bytes.size() / sizeof(ContactRecord));
+        std::memcpy(records.data() + before, parcel.bytes.data(), parcel.bytes.size());
+    }
+}
+
+}  // namespace
+
+void follow_grains(const Communicator& comm, const Decomposition& decomposition, const CellGrid& grid,
+                   const ParticleSet& grains, std::vector<ContactRecord>& records) {
+    if (comm.size() == 1) return;
+    const std::uint64_t* id = grains.data(field::id);
+    std::unordered_map<std::uint64_t, int> destination;  // of the grains that leave
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+        Cell cell{};
+        for (int axis = 0; axis < grains.dimension(); ++axis)
+            cell[static_cast<std::size_t>(axis)] =
+                grid.index_along(axis, grains.data(field::position, axis)[i]);
+        const int owner = decomposition.partition().owner_of(cell);
+        if (owner != comm.rank()) destination.emplace(id[i], owner);
+    }
+    Parcels leaving;
+    if (!destination.empty())
+        for (const ContactRecord& record : records) {
+            const auto first = destination.find(record.first), second = destination.find(record.second);
+            const int to_first = first == destination.end() ? comm.rank() : first->second;
+            const int to_second = second == destination.end() ? comm.rank() : second->second;
+            if (to_first != comm.rank()) leaving[to_first].push_back(record);
+            if (to_second != comm.rank() && to_second != to_first) leaving[to_second].push_back(record);
+        }
+    exchange(comm, leaving, records);
+}
+
+namespace {
+
+/// Calls visit(component array, place in the history) for all that a contact remembers.
+template <class Set, class Visit>
+void for_each_component(Set& contacts, std::span<const FieldInfo* const> fields, Visit&& visit) {
+    std::size_t place = 0;
+    for (const FieldInfo* info : fields)
+        for (auto& component : contacts.column(*info).components) visit(component.data(), place++);
+}
+
+}  // namespace
+
+ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fields) {
+    ParticleSet contacts("contacts", dimension);
+    std::erase_if(contacts.columns(), [](const Column& column) { return column.info == &field::position; });
+    contacts.add(field::first_id);
+    contacts.add(field::second_id);
+    for (const FieldInfo* info : fields) contacts.add(*info);
+    return contacts;
+}
+
+ParticleSet saved_contacts(std::vector<ContactRecord> saved, int dimension,
+                           std::span<const FieldInfo* const> fields) {
+    constexpr int bits_of_rank = 20;
+    std::sort(saved.begin(), saved.end(), [](const ContactRecord& a, const ContactRecord& b) {
+        return a.first != b.first ? a.first < b.first : a.second < b.second;
+    });
+    ParticleSet contacts = empty_contacts(dimension, fields);
+    contacts.resize(saved.size());
+    std::uint64_t rank = 0;
+    for (std::size_t k = 0; k < saved.size(); ++k) {
+        rank = k > 0 && saved[k].first == saved[k - 1].first ? rank + 1 : 0;
+        if (saved[k].first >> (64 - bits_of_rank) != 0 || rank >> bits_of_rank != 0)
+            throw std::runtime_error("contacts of ids from 2^44 on, or more than 2^20 of a grain");
+        contacts.data(field::id)[k] = saved[k].first << bits_of_rank | rank;
+        contacts.data(field::first_id)[k] = saved[k].first;
+        contacts.data(field::second_id)[k] = saved[k].second;
+    }
+    for_each_component(contacts, fields, [&](std::byte* values, std::size_t place) {
+        for (std::size_t k = 0; k < saved.size(); ++k)
+            reinterpret_cast<double*>(values)[k] = saved[k].history[place];
+    });
+    return contacts;
+}
+
+std::vector<ContactRecord> read_contacts(const Communicator& comm, const ParticleSet& contacts,
+                                         std::span<const FieldInfo* const> fields,
+                                         const ParticleSet& grains) {
+    std::vector<ContactRecord> rows(contacts.size());
+    for (std::size_t k = 0; k < rows.size(); ++k)
+        rows[k] = {contacts.data(field::first_id)[k], contacts.data(field::second_id)[k], {}};
+    for_each_component(contacts, fields, [&](const std::byte* values, std::size_t place) {
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            rows[k].history[place] = reinterpret_cast<const double*>(values)[k];
+    });
+    // Ranks hold grains in order of id; those without any repeat the id of the next.
+    const auto ids = grains.own(field::id);
+    const std::uint64_t least = ids.empty() ? ~std::uint64_t{0} : *std::min_element(ids.begin(), ids.end());
+    std::vector<std::uint64_t> starts = comm.all_gather(std::span<const std::uint64_t>(&least, 1));
+    for (std::size_t r = starts.size() - 1; r > 0; --r) starts[r - 1] = std::min(starts[r - 1], starts[r]);
+    const auto holder = [&](std::uint64_t id) {
+        const auto after = std::upper_bound(starts.begin(), starts.end(), id);
+        return static_cast<int>(std::max<std::ptrdiff_t>(after - starts.begin() - 1, 0));
+    };
+    Parcels parcels;
+    for (const ContactRecord& row : rows) {
+        const int first = holder(row.first), second = holder(row.second);
+        parcels[first].push_back(row);
+        if (!is_wall_key(row.second) && second != first) parcels[second].push_back(row);
+    }
+    std::vector<ContactRecord> records;
+    exchange(comm, parcels, records);
+    return records;
+}
+
+}  // namespace talus::dem

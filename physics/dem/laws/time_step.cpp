@@ -1,0 +1,38 @@
+#include "physics/dem/laws/time_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace talus::dem {
+
+double rayleigh_time(double radius, double density, double shear_modulus, double poisson_ratio) {
+    return std::numbers::pi * radius * std::sqrt(density / shear_modulus) / (0.1631 * poisson_ratio + 0.8766);
+}
+
+double linear_collision_time(double stiffness, double effective_mass, double damping) {
+    const double share = 0.25 * damping * damping, frequency = std::sqrt(stiffness / effective_mass);
+    return std::numbers::pi / (share < 1 ? frequency * std::sqrt(1 - share) : frequency);
+}
+
+double hertz_collision_time(double effective_modulus, double effective_radius, double effective_mass,
+                            double impact_speed) {
+    const double d = std::pow(15 * effective_mass * impact_speed * impact_speed /
+                                  (16 * effective_modulus * std::sqrt(effective_radius)),
+                              0.4);
+    return 2.943275 * d / impact_speed;
+}
+
+double hertz_tangent_stiffness(double effective_modulus, double effective_radius, double overlap) {
+    return 2 * effective_modulus * std::sqrt(effective_radius * overlap);
+}
+
+double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
+                            double damping_ratio) {
+    const double ratio = tangential_stiffness / normal_stiffness;
+    const double square_of_frequency = std::max(8 * (1 + ratio), 40 * ratio) * normal_stiffness / mass;
+    const double damped = std::sqrt(1 + damping_ratio * damping_ratio) - damping_ratio;
+    return 2 / std::sqrt(square_of_frequency) * damped;
+}
+
+}  // namespace talus::dem

@@ -1,0 +1,31 @@
+#pragma once
+
+namespace talus::dem {
+
+/// Time in which a Rayleigh wave crosses a grain, pi r sqrt(rho/G) / (0.1631 nu + 0.8766) [s]; the common
+/// rule takes 0.1 to 0.3 of the least of all grains as the step. C. Thornton, C. W. Randall, in:
+/// Micromechanics of Granular Materials (1988) 133; Y. Li, Y. Xu, C. Thornton, Powder Technol. 160 (2005)
+/// 219.
+double rayleigh_time(double radius, double density, double shear_modulus, double poisson_ratio);
+
+/// Time that a collision of the linear spring lasts, pi / sqrt(k/m* - (gamma/2m*)^2) [s], where `damping` is
+/// gamma/sqrt(k m*) [1]; without damping if that is supercritical.
+double linear_collision_time(double stiffness, double effective_mass, double damping);
+
+/// Time that an elastic collision after Hertz lasts, 2.9432 d_max/v, d_max = (15 m* v^2 / (16 E*
+/// sqrt(R*)))^(2/5) [s]. K. L. Johnson, Contact Mechanics (1985), eqs 11.24-25.
+double hertz_collision_time(double effective_modulus, double effective_radius, double effective_mass,
+                            double impact_speed);
+
+/// dF_n/dd = 2 E* sqrt(R* d) [N/m]; the tangential stiffness of Mindlin is 4 G*/E* times that.
+double hertz_tangent_stiffness(double effective_modulus, double effective_radius, double overlap);
+
+/// Greatest stable step of the leapfrog in packed grains whose every contact is a spring [s]: closest packing
+/// of equal spheres, 12 contacts each, that move and turn, omega^2 = max(8 (1 + k_t/k_n), 40 k_t/k_n) k_n/m
+/// (the greatest eigenvalue of the packing's dynamical matrix over all wave vectors; from k_t = k_n/4 on it
+/// is that of all grains turning alike). Damping of ratio xi = gamma/(2 sqrt(k_n m)) lowers it by sqrt(1 +
+/// xi^2) - xi.
+double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
+                            double damping_ratio);
+
+}  // namespace talus::dem

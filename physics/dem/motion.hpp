@@ -1,0 +1,55 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "domain/box.hpp"
+#include "domain/particles.hpp"
+#include "physics/dem/force_sum.hpp"
+#include "physics/dem/vector3.hpp"
+
+namespace talus::dem {
+
+/// Coordinates along periodic axes are kept to whole multiples of a power of two, about 2^-50 of the box, so
+/// that moving a grain by the length of the box is exact: what a pair sees of each other has the same bits
+/// whichever image of a grain is looked at, and whenever grains are brought back into the box.
+class PeriodicPlaces {
+  public:
+    explicit PeriodicPlaces(const Box& box);
+    /// Nearest place; a displacement is brought to one before it is added, for the sum would be rounded
+    /// twice.
+    double operator()(int axis, double coordinate) const {
+        const double shift = shifts_[static_cast<std::size_t>(axis)];
+        return (coordinate + shift) - shift;
+    }
+    /// The box with its edges at such places.
+    Box aligned(Box box) const;
+
+  private:
+    std::array<double, 3> shifts_{};
+};
+
+/// x += dt v + dt^2/2 a of the own grains: first part of the velocity Verlet step. L. Verlet, Phys. Rev. 159
+/// (1967) 98; W. C. Swope et al., J. Chem. Phys. 76 (1982) 637.
+void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places);
+
+/// Velocities and angular velocities of the end of the step as far as they are known: v + dt a. A contact law
+/// must see velocities of the same time as positions, not those of half a step before: D. Vyas, J. M. Ottino,
+/// R. M. Lueptow, P. B. Umbanhowar, arXiv 2410.14798 (2024).
+void predict(ParticleSet& grains, double time_step);
+
+/// What turns a grain's sums of forces into its acceleration, made anew with the order of grains.
+struct Responses {
+    std::vector<double> acceleration;          ///< of one unit of force [m s-2]; 0: the grain is held
+    std::vector<double> angular;               ///< of one unit of torque [rad s-2]
+    std::array<std::vector<double>, 3> start;  ///< where each grain was at the time [m]
+};
+
+/// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`. Returns
+/// the square of the largest distance from `responses.start` that a grain will have after the next drift() of
+/// the same time step [m2].
+double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
+                   const Vector3<>& gravity, double kick_step, double time_step);
+
+}  // namespace talus::dem

@@ -1,0 +1,125 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "comm/communicator.hpp"
+#include "comm/decomposition.hpp"
+#include "domain/box.hpp"
+#include "domain/particles.hpp"
+#include "physics/dem/contact_list.hpp"
+#include "physics/dem/contact_pass.hpp"
+#include "physics/dem/motion.hpp"
+#include "physics/dem/wall_contacts.hpp"
+#include "src/phases.hpp"
+
+namespace talus {
+
+/// Everything that defines a run of grains besides the grains: what a scene says, resolved.
+struct GrainSetup {
+    Box box;                             ///< three-dimensional; open or periodic along each axis
+    dem::AnyLawTable laws;               ///< of all pairs of materials
+    std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
+    std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
+    std::vector<dem::Wall> walls;
+    dem::Vector3<> gravity;  ///< [m s-2]
+    double time_step = 0;    ///< the same throughout [s]
+    double skin = 0;         ///< gap up to which pairs are listed [m]; no result depends on it
+    PartitionMethod partition = PartitionMethod::cheapest;
+    int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
+};
+
+/// Totals over all grains, exact sums rounded once: the same bits on any number of ranks.
+struct GrainTotals {
+    double mass = 0, kinetic_energy = 0, rotational_energy = 0;
+    double potential_energy = 0;  ///< of gravity, relative to the origin [J]
+    std::array<double, 3> momentum{};
+    double greatest_speed = 0;
+    double greatest_overlap = 0;  ///< over the smaller radius [1]
+    std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
+    std::vector<std::array<double, 3>>
+        wall_forces;          ///< of the grains on each wall at the last evaluation [N]
+    double coordination = 0;  ///< contacts with grains a grain that is not held [1]
+};
+
+/// Spherical grains under contact laws.
+class GrainSimulation {
+  public:
+    /// `grains` hold their share of the initial state or of a checkpoint, on any ranks, with the fields of
+    /// add_fields(). Collective.
+    GrainSimulation(const Communicator& comm, GrainSetup setup, ParticleSet grains);
+
+    static void add_fields(ParticleSet& grains);
+    /// What contacts of the setup's law remember.
+    static std::vector<const FieldInfo*> history_fields(const GrainSetup& setup);
+
+    /// First evaluation of a new run at time 0. Collective.
+    void start();
+    /// Goes on from a checkpoint: the grains given to the constructor as they were read, and their contacts.
+    /// Collective.
+    void resume(double time, std::uint64_t step, const ParticleSet& contacts);
+
+    /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
+    /// all bounds, or a grain that was lost or left through a wall. Collective.
+    void step();
+
+    double time() const { return time_; }                  ///< [s]
+    double time_step() const { return setup_.time_step; }  ///< [s]
+    std::uint64_t step_count() const { return step_; }
+    const ParticleSet& grains() const { return grains_; }
+    const GrainSetup& setup() const { return setup_; }
+    const Communicator& comm() const { return comm_; }
+    const Decomposition& decomposition() const { return decomposition_; }
+    std::uint64_t total_grains() const { return decomposition_.total_particles(); }
+    /// Contacts evaluated by this rank since the counters were reset, those with walls included.
+    std::uint64_t evaluated_contacts() const { return evaluated_; }
+    /// Times the list of pairs was made since the counters were reset.
+    std::uint64_t list_count() const { return lists_; }
+    /// Memory of pairs, contacts and forces on this rank, besides the fields.
+    std::uint64_t bytes_of_lists() const;
+    Phases& phases() { return phases_; }
+    void reset_counters();
+
+    /// Brings the grains back into the box and to where they belong, as a checkpoint holds them, and returns
+    /// the contacts of this rank's grains. Changes no result. Collective.
+    ParticleSet save();
+    /// Collective.
+    GrainTotals totals() const;
+
+  private:
+    void arrange(std::vector<dem::ContactRecord> records, double time);
+    std::vector<dem::ContactRecord> records_of_contacts() const;
+    std::vector<dem::ContactRecord> records_below(std::size_t end) const;
+    void describe_grains();
+    void list_contacts(const std::vector<dem::ContactRecord>& records, double time);
+    void evaluate(double time_step);
+    void finish(double kick_step);
+    std::vector<dem::WallPose> poses_at(double time) const;
+    bool walls_move() const;
+    void refuse_overload(const dem::Overload& overload, bool at_wall);
+    double listed_gap() const { return reach_ + setup_.skin; }
+
+    const Communicator& comm_;
+    dem::PeriodicPlaces places_;
+    GrainSetup setup_;
+    ParticleSet grains_;
+    Decomposition decomposition_;
+    std::unique_ptr<CellGrid> grid_;
+    double largest_radius_ = 0, reach_ = 0;
+    dem::ContactList pairs_;
+    dem::WallContacts at_walls_;
+    std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
+    dem::GrainRows rows_;
+    dem::Responses responses_;
+    std::vector<dem::ForceSum> sums_;
+    double time_ = 0;
+    std::uint64_t step_ = 0, last_balance_ = 0;
+    bool outdated_ = false;
+    std::string fault_;
+    std::uint64_t evaluated_ = 0, lists_ = 0;
+    Phases phases_;
+};
+
+}  // namespace talus

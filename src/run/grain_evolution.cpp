@@ -1,0 +1,143 @@
+#include "src/run/grain_evolution.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "domain/grain_fields.hpp"
+#include "io/agree.hpp"
+#include "io/checkpoint.hpp"
+#include "src/run/sph_evolution.hpp"
+
+namespace talus {
+
+std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene,
+                                          std::optional<double> until) {
+    if (is_grain_scene(scene)) return std::make_unique<GrainEvolution>(comm, scene, until);
+    return std::make_unique<SphEvolution>(comm, scene, until);
+}
+
+GrainEvolution::GrainEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until)
+    : comm_(comm),
+      scene_(scene),
+      setup_(read_grain_scene(comm, scene)),
+      end_time_(until.value_or(setup_.output.end_time)) {}
+
+std::vector<std::string> GrainEvolution::warnings() const {
+    constexpr double worth_noting = 0.001;
+    if (!(first_overlap_ > worth_noting)) return {};
+    return {fmt::format(
+        "grains overlap at the start, by up to {:.3g} of the smaller radius: they will push each other "
+        "apart",
+        first_overlap_)};
+}
+
+void GrainEvolution::create(const std::function<void()>&) {
+    constexpr double most = 0.2;  // of the smaller radius
+    simulation_.emplace(comm_, setup_.simulation, make_grains(comm_, setup_));
+    simulation_->start();
+    first_overlap_ = simulation_->totals().greatest_overlap;
+    if (first_overlap_ > most)
+        scene_.root().error(
+            "grains",
+            fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; allowed: {}",
+                        first_overlap_, most));
+    scene_.finish();
+}
+
+ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
+                                    const std::filesystem::path& output_folder) {
+    const auto began = std::chrono::steady_clock::now();
+    ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
+    ParticleSet grains = empty_grains();
+    ParticleSet contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.simulation));
+    found.state = read_checkpoint(comm_, found.file, {&grains, &contacts});
+    if (const std::vector<std::string> wanted = materials(); found.state.materials != wanted)
+        throw AgreedError(exit_input_output,
+                          fmt::format("{}: is of grains of {}, this scene has {}", found.file.string(),
+                                      fmt::join(found.state.materials, ", "), fmt::join(wanted, ", ")));
+    simulation_.emplace(comm_, setup_.simulation, std::move(grains));
+    read_contacts_ = std::move(contacts);
+    found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return found;
+}
+
+void GrainEvolution::resume(const RunState& state) {
+    simulation_->resume(state.time, state.step, *read_contacts_);
+    read_contacts_.reset();
+}
+
+std::vector<std::string> GrainEvolution::materials() const {
+    std::vector<std::string> names;
+    for (const GrainBody& body : setup_.bodies) names.push_back(body.material.name);
+    return names;
+}
+
+void GrainEvolution::save(const WriteSets& write) {
+    const ParticleSet contacts = simulation_->save();
+    write({&simulation_->grains(), &contacts});
+}
+
+void GrainEvolution::describe(RunState& state) const { state.materials = materials(); }
+
+std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
+    std::vector<SnapshotField> fields;
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::angular_velocity, &field::radius, &field::mass, &field::body})
+        fields.push_back({.field = info});
+    return fields;
+}
+
+std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
+    std::vector<CsvColumn> columns = {{"time", "s"},
+                                      {"mass", "kg"},
+                                      {"kinetic_energy", "J"},
+                                      {"rotational_energy", "J"},
+                                      {"potential_energy", "J"},
+                                      {"momentum_x", "kg m s-1"},
+                                      {"momentum_y", "kg m s-1"},
+                                      {"momentum_z", "kg m s-1"},
+                                      {"greatest_speed", "m s-1"},
+                                      {"greatest_overlap", "1"},
+                                      {"contacts", "1"},
+                                      {"wall_contacts", "1"},
+                                      {"coordination", "1"}};
+    for (const dem::Wall& wall : setup_.simulation.walls)
+        for (const char axis : {'x', 'y', 'z'})
+            columns.push_back({fmt::format("force_{}_{}", wall.name, axis), "N"});
+    return columns;
+}
+
+Diagnostics GrainEvolution::diagnostics() const {
+    const GrainTotals t = simulation_->totals();
+    std::vector<double> row = {simulation_->time(),
+                               t.mass,
+                               t.kinetic_energy,
+                               t.rotational_energy,
+                               t.potential_energy,
+                               t.momentum[0],
+                               t.momentum[1],
+                               t.momentum[2],
+                               t.greatest_speed,
+                               t.greatest_overlap,
+                               static_cast<double>(t.contacts),
+                               static_cast<double>(t.wall_contacts),
+                               t.coordination};
+    for (const auto& force : t.wall_forces) row.insert(row.end(), force.begin(), force.end());
+    return {row, 0};
+}
+
+std::string GrainEvolution::summary() const {
+    const GrainTotals t = simulation_->totals();
+    return fmt::format(
+        "{} contacts of grains, {} at walls, {:.3f} grains touch each that is not held; greatest overlap "
+        "{:.2g} of the radius; pairs listed {} times",
+        t.contacts, t.wall_contacts, t.coordination, t.greatest_overlap, simulation_->list_count());
+}
+
+std::string GrainEvolution::performance() const {
+    return fmt::format("\"lists\": {}, \"list_bytes_of_a_rank\": {}, ", simulation_->list_count(),
+                       comm_.all_max(simulation_->bytes_of_lists()));
+}
+
+}  // namespace talus

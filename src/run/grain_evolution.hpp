@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+
+#include "src/grain_simulation.hpp"
+#include "src/run/evolution.hpp"
+#include "src/setup/grain_scene.hpp"
+
+namespace talus {
+
+/// Grains under contact laws.
+class GrainEvolution : public Evolution {
+  public:
+    GrainEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until);
+
+    const std::string& title() const override { return setup_.title; }
+    const OutputPlan& output() const override { return setup_.output; }
+    double end_time() const override { return end_time_; }
+    std::vector<std::string> warnings() const override;
+    void create(const std::function<void()>& check_stop) override;
+    ReadCheckpoint read(const std::filesystem::path& what,
+                        const std::filesystem::path& output_folder) override;
+    void start() override {}  // create() does: overlaps are known only then
+    void resume(const RunState& state) override;
+    void step() override { simulation_->step(); }
+    double time() const override { return simulation_->time(); }
+    double time_step() const override { return simulation_->time_step(); }
+    std::uint64_t step_count() const override { return simulation_->step_count(); }
+    std::uint64_t total_particles() const override { return simulation_->total_grains(); }
+    const ParticleSet& particles() const override { return simulation_->grains(); }
+    const Decomposition& decomposition() const override { return simulation_->decomposition(); }
+    Phases& phases() override { return simulation_->phases(); }
+    std::uint64_t pairs() const override { return simulation_->evaluated_contacts(); }
+    void reset_counters() override { simulation_->reset_counters(); }
+    double work() const override { return static_cast<double>(simulation_->grains().size()); }
+    void describe(RunState& state) const override;
+    void save(const WriteSets& write) override;
+    std::vector<SnapshotField> snapshot_fields() const override;
+    std::vector<CsvColumn> diagnostics_columns() const override;
+    Diagnostics diagnostics() const override;
+    std::string summary() const override;
+    std::string performance() const override;
+
+    const GrainScene& setup() const { return setup_; }
+    const GrainSimulation& simulation() const { return *simulation_; }
+
+  private:
+    std::vector<std::string> materials() const;
+
+    const Communicator& comm_;
+    const Scene& scene_;
+    GrainScene setup_;
+    double end_time_;  ///< [s]
+    std::optional<GrainSimulation> simulation_;
+    std::optional<ParticleSet> read_contacts_;  ///< of the checkpoint, until resume()
+    double first_overlap_ = 0;                  ///< over the radius [1]
+};
+
+}  // namespace talus

@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/scene.hpp"
+#include "physics/dem/law_table.hpp"
+#include "physics/dem/laws/materials.hpp"
+
+namespace talus {
+
+struct GrainBody;
+
+/// Time steps for grains under a law.
+struct GrainTimeStep {
+    double greatest;     ///< that is stable [s]
+    double usual;        ///< where none is asked for [s]
+    std::string reason;  ///< of the greatest
+};
+
+/// Reads the law of [dem], the materials that grains and walls name and the pairs of [[contact]]. Faults are
+/// recorded in the scene.
+class GrainLawReader {
+  public:
+    explicit GrainLawReader(const Section& root);
+
+    /// Index of the material that a table's key `material` names, from [materials.NAME].
+    std::uint8_t material(const Section& table);
+    const std::vector<dem::GrainMaterial>& materials() const { return materials_; }
+    /// Once all materials are known.
+    void read_pairs();
+    GrainTimeStep time_step(const std::vector<GrainBody>& bodies) const;
+    /// Of a scene without faults.
+    dem::AnyLawTable table() const;
+
+  private:
+    dem::GrainMaterial read_material(const Section& table, const std::string& name) const;
+
+    Section root_, dem_;
+    bool hertz_, rolling_;
+    dem::EndOfContact end_;
+    double stiffness_ = 0, stiffness_ratio_ = 0;  ///< of the linear law
+    std::vector<dem::GrainMaterial> materials_;
+    std::optional<dem::MaterialPairs> pairs_;
+};
+
+}  // namespace talus

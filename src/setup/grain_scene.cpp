@@ -1,0 +1,244 @@
+#include "src/setup/grain_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "domain/grain_fields.hpp"
+#include "domain/random.hpp"
+#include "src/setup/grain_law_reader.hpp"
+#include "src/setup/material_reader.hpp"
+#include "src/setup/run_reader.hpp"
+#include "src/setup/shape_reader.hpp"
+#include "src/setup/wall_reader.hpp"
+
+namespace talus {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Range positive{0, infinity, true};
+
+/// Rows "x,y,z,radius[,vx,vy,vz[,wx,wy,wz]]" in SI units; lines beginning with # are not read.
+std::vector<std::array<double, 10>> read_list(const Communicator& comm, const Scene& scene,
+                                              const Section& table) {
+    const std::filesystem::path file =
+        std::filesystem::absolute(scene.file()).parent_path() / table.text("file");
+    const std::string text = read_shared_text(comm, file);
+    std::vector<std::array<double, 10>> rows;
+    std::size_t line = 0;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        ++line;
+        const char* at = text.data() + begin;
+        if (begin < end && *at != '#') {
+            std::array<double, 10> row{};
+            std::size_t count = 0;
+            for (bool more = true; more && count < row.size(); ++count) {
+                char* after = nullptr;
+                row[count] = std::strtod(at, &after);
+                if (after == at || !std::isfinite(row[count])) break;
+                more = *after == ',';
+                at = after + 1;
+            }
+            if ((count != 4 && count != 7 && count != 10) || !(row[3] > 0)) {
+                table.error("file", fmt::format("{}:{}: not a row x,y,z,radius with or without vx,vy,vz and "
+                                                "wx,wy,wz, radius above 0",
+                                                file.string(), line));
+                return {};
+            }
+            rows.push_back(row);
+        }
+        begin = end + 1;
+    }
+    if (rows.empty()) table.error("file", fmt::format("{} holds no grains", file.string()));
+    return rows;
+}
+
+void read_packing(const Section& table, const BodyContext& context, GrainBody& body) {
+    if (table.has("radii")) {
+        const std::vector<double> radii = table.numbers("radii", "m", 2);
+        if (radii.size() == 2 && 0 < radii[0] && radii[0] <= radii[1]) {
+            body.least_radius = radii[0];
+            body.greatest_radius = radii[1];
+        } else {
+            table.error("radii", "must be two radii above 0 in order");
+        }
+    } else {
+        body.least_radius = body.greatest_radius = table.number("radius", "m", {}, positive);
+    }
+    body.shape = read_shape(table, body.material.density, context);
+    const bool cubic = table.choice("lattice", {"cubic", "close_packed"}, "cubic") == "cubic";
+    body.cell = lattice_cell(cubic ? Lattice::cubic : Lattice::close_packed, 3);
+    constexpr double room = 1.05;  // between neighbours, in diameters
+    const double touching = 2 * room * body.greatest_radius * (cubic ? 1 : std::pow(2.0, -1.0 / 6));
+    body.spacing = table.number("spacing", "m", touching, positive);
+    body.jitter = table.number("jitter", "1", 0.0, {0, 1});
+    body.velocity = origin_default(table, "velocity", "m/s", 3);
+    body.angular_velocity = origin_default(table, "angular_velocity", "rad/s", 3);
+}
+
+std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene, const Box& box,
+                                   GrainLawReader& laws, std::vector<std::uint8_t>& materials,
+                                   std::uint64_t seed) {
+    std::vector<GrainBody> bodies;
+    const std::vector<Section> tables = scene.root().sections("grains");
+    if (tables.size() > 255) scene.root().error("grains", "more than 255 bodies of grains");
+    for (const Section& table : tables) {
+        GrainBody body;
+        body.name = table.text("name", table.path());
+        materials.push_back(laws.material(table));
+        body.material = laws.materials()[materials.back()];
+        body.held = table.flag("held", false);
+        const BodyContext context{.comm = comm,
+                                  .scene = scene,
+                                  .dimension = 3,
+                                  .domain = {box.lower, box.upper},
+                                  .boundaries = box.boundary,
+                                  .first_body = nullptr,
+                                  .in_impact = false,
+                                  .gravitational_constant = 0,
+                                  .seed = seed};
+        if (table.has("file")) {
+            body.listed = read_list(comm, scene, table);
+            body.least_radius = infinity;
+            for (const auto& row : body.listed) {
+                body.least_radius = std::min(body.least_radius, row[3]);
+                body.greatest_radius = std::max(body.greatest_radius, row[3]);
+            }
+        } else {
+            read_packing(table, context, body);
+        }
+        bodies.push_back(std::move(body));
+    }
+    return bodies;
+}
+
+/// Grains that wrap around the box must not meet the same partner, or themselves, on both sides.
+void check_box(const Section& table, const Box& box, double reach) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const Boundary boundary = box.boundary[static_cast<std::size_t>(axis)];
+        if (boundary == Boundary::reflecting)
+            table.error("boundaries", "grains know open and periodic boundaries; a wall is a [[wall]]");
+        if (boundary == Boundary::periodic && box.length(axis) < 2 * reach)
+            table.error("upper",
+                        fmt::format("the box is {} m long along {}, where it is periodic; allowed: at least "
+                                    "{:.4g} m, two diameters of the largest grain with its skin",
+                                    box.length(axis), "xyz"[axis], 2 * reach));
+    }
+}
+
+}  // namespace
+
+bool is_grain_scene(const Scene& scene) { return scene.root().has("grains"); }
+
+GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
+    const Section root = scene.root();
+    const std::string title = root.text("title", scene.file().stem().string());
+    const auto seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
+    root.integer("dimension", 3, 3, 3);
+    const Box box = read_box(root.section("box"), 3);
+    GrainLawReader laws(root);
+    std::vector<std::uint8_t> material, held;
+    std::vector<GrainBody> bodies = read_bodies(comm, scene, box, laws, material, seed);
+    std::vector<dem::Wall> walls = read_walls(scene, box, laws);
+    double greatest = 0;
+    for (const GrainBody& body : bodies) {
+        held.push_back(body.held ? 1 : 0);
+        greatest = std::max(greatest, body.greatest_radius);
+    }
+    const Section table = root.section("dem"), run = root.section("run");
+    const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
+    check_box(root.section("box"), box, 2 * greatest + skin);
+    const OutputPlan output = read_output(root);
+    const PartitionMethod partition = read_partition(run);
+    const int rebalance_interval = read_rebalance_interval(run);
+    const std::vector<double> gravity = table.numbers("gravity", "m s-2", 3, std::vector<double>(3, 0.0));
+    laws.read_pairs();
+    const GrainTimeStep limit = laws.time_step(bodies);
+    const double time_step = table.number("time_step", "s", limit.usual, positive);
+    if (time_step > limit.greatest)
+        table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}",
+                                             limit.greatest, limit.reason));
+    scene.finish();
+    return {.title = title,
+            .simulation = {.box = box,
+                           .laws = laws.table(),
+                           .material = material,
+                           .held = held,
+                           .walls = std::move(walls),
+                           .gravity = {gravity[0], gravity[1], gravity[2]},
+                           .time_step = time_step,
+                           .skin = skin,
+                           .partition = partition,
+                           .rebalance_interval = rebalance_interval},
+            .bodies = std::move(bodies),
+            .greatest_time_step = limit.greatest,
+            .time_step_limit = limit.reason,
+            .output = output,
+            .seed = seed};
+}
+
+ParticleSet empty_grains() {
+    ParticleSet grains("grains", 3);
+    GrainSimulation::add_fields(grains);
+    return grains;
+}
+
+namespace {
+
+using Row = std::array<double, 10>;
+
+/// The grains of a packing; `first_id` of the body's first.
+std::vector<Row> packed(const GrainBody& body, const RandomStream& random, std::uint64_t first_id) {
+    std::vector<Row> rows;
+    for_each_point(body.shape, body.cell, body.spacing, 3, [&](const Point& point) {
+        const std::uint64_t id = first_id + rows.size();
+        Row row{};
+        for (std::uint32_t a = 0; a < 3; ++a) {
+            row[a] = point[a] + body.jitter * body.spacing * (2 * random.uniform(id, a) - 1);
+            row[4 + a] = body.velocity[a];
+            row[7 + a] = body.angular_velocity[a];
+        }
+        row[3] = body.least_radius + (body.greatest_radius - body.least_radius) * random.uniform(id, 3);
+        rows.push_back(row);
+    });
+    return rows;
+}
+
+}  // namespace
+
+ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
+    ParticleSet grains = empty_grains();
+    const auto ranks = static_cast<std::uint64_t>(comm.size()),
+               rank = static_cast<std::uint64_t>(comm.rank());
+    std::uint64_t first_id = 0;
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+        const GrainBody& body = scene.bodies[b];
+        const RandomStream random{scene.seed, RandomPurpose::positions, static_cast<std::uint16_t>(b)};
+        const std::vector<Row> rows = body.listed.empty() ? packed(body, random, first_id) : body.listed;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            if ((first_id + k) % ranks != rank) continue;
+            const std::size_t i = grains.size();
+            grains.resize(i + 1);
+            const Row& row = rows[k];
+            grains.data(field::id)[i] = first_id + k;
+            grains.data(field::body)[i] = static_cast<std::uint8_t>(b);
+            for (int axis = 0; axis < 3; ++axis) {
+                const auto a = static_cast<std::size_t>(axis);
+                grains.data(field::position, axis)[i] = row[a];
+                grains.data(field::velocity, axis)[i] = body.held ? 0 : row[4 + a];
+                grains.data(field::angular_velocity, axis)[i] = body.held ? 0 : row[7 + a];
+            }
+            grains.data(field::radius)[i] = row[3];
+            grains.data(field::mass)[i] =
+                4.0 / 3.0 * std::numbers::pi * row[3] * row[3] * row[3] * body.material.density;
+        }
+        first_id += rows.size();
+    }
+    return grains;
+}
+
+}  // namespace talus

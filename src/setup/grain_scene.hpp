@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "comm/communicator.hpp"
+#include "io/scene.hpp"
+#include "physics/dem/laws/materials.hpp"
+#include "src/grain_simulation.hpp"
+#include "src/setup/packing.hpp"
+#include "src/setup/scene_setup.hpp"
+
+namespace talus {
+
+/// Grains of one material, before they are made: a region filled with a packing, or a list of places.
+struct GrainBody {
+    std::string name;
+    dem::GrainMaterial material;
+    bool held = false;
+    BodyShape shape;
+    UnitCell cell;
+    double spacing = 0;  ///< cube root of the volume a grain [m]
+    double jitter = 0;   ///< random displacement along each axis, at most, in spacings [1]
+    double least_radius = 0, greatest_radius = 0;  ///< evenly distributed between [m]
+    Point velocity{}, angular_velocity{};          ///< [m/s], [rad/s]
+    /// Rows of a file in place of all that: x y z, radius, velocity, angular velocity.
+    std::vector<std::array<double, 10>> listed;
+};
+
+/// A scene of grains, read and checked.
+struct GrainScene {
+    std::string title;
+    GrainSetup simulation;
+    std::vector<GrainBody> bodies;
+    double greatest_time_step = 0;  ///< that is stable [s]
+    std::string time_step_limit;    ///< what limits it
+    OutputPlan output;
+    std::uint64_t seed = 0;
+};
+
+/// Whether the scene is one of grains: it has a table [[grains]].
+bool is_grain_scene(const Scene& scene);
+
+/// Reads everything such a scene says. Throws SceneError (on every rank) with all faults at once. Collective.
+GrainScene read_grain_scene(const Communicator& comm, const Scene& scene);
+
+/// An empty set with the fields that grains need.
+ParticleSet empty_grains();
+
+/// The scene's grains at time 0, on any ranks. Ids are numbered through in order of the bodies.
+ParticleSet make_grains(const Communicator& comm, const GrainScene& scene);
+
+}  // namespace talus

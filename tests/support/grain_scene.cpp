@@ -1,0 +1,80 @@
+#include "tests/support/grain_scene.hpp"
+
+#include <numbers>
+#include <stdexcept>
+
+#include "domain/grain_fields.hpp"
+
+namespace talus::test {
+
+double mass_of(const GrainState& grain) {
+    return 4.0 / 3.0 * std::numbers::pi * grain.radius * grain.radius * grain.radius * grain.density;
+}
+
+dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials) {
+    const dem::MaterialPairs pairs(materials);
+    return dem::LawTable<dem::HertzLaw>{
+        dem::PairTable<dem::HertzLaw<double>>(materials.size(), [&](std::size_t a, std::size_t b) {
+            const dem::PairProperties pair = pairs(a, b);
+            return dem::HertzLaw<double>{
+                dem::hertz_mindlin(pair, dem::EndOfContact::may_attract), {pair.friction}, {}, {}, {}};
+        })};
+}
+
+GrainSetup grain_setup(const std::vector<dem::GrainMaterial>& materials, double radius, double time_step) {
+    GrainSetup setup{.box = {},
+                     .laws = hertz_table(materials),
+                     .material = {},
+                     .held = std::vector<std::uint8_t>(materials.size(), 0),
+                     .walls = {},
+                     .gravity = {},
+                     .time_step = time_step,
+                     .skin = 0.1 * radius};
+    for (std::size_t m = 0; m < materials.size(); ++m) setup.material.push_back(static_cast<std::uint8_t>(m));
+    return setup;
+}
+
+ParticleSet grain_set(const Communicator& comm, const std::vector<GrainState>& grains) {
+    ParticleSet set("grains", 3);
+    GrainSimulation::add_fields(set);
+    std::vector<std::size_t> mine;
+    for (std::size_t k = 0; k < grains.size(); ++k)
+        if (k % static_cast<std::size_t>(comm.size()) == static_cast<std::size_t>(comm.rank()))
+            mine.push_back(k);
+    set.resize(mine.size());
+    for (std::size_t i = 0; i < mine.size(); ++i) {
+        const GrainState& grain = grains[mine[i]];
+        set.data(field::id)[i] = mine[i];
+        const auto put = [&](const Field<double>& field, const dem::Vector3<>& v) {
+            set.data(field, 0)[i] = v.x;
+            set.data(field, 1)[i] = v.y;
+            set.data(field, 2)[i] = v.z;
+        };
+        put(field::position, grain.position);
+        put(field::velocity, grain.velocity);
+        put(field::angular_velocity, grain.angular_velocity);
+        set.data(field::radius)[i] = grain.radius;
+        set.data(field::mass)[i] = mass_of(grain);
+        set.data(field::body)[i] = grain.body;
+    }
+    return set;
+}
+
+GrainState state_of(const GrainSimulation& simulation, std::uint64_t id) {
+    const ParticleSet& set = simulation.grains();
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        if (set.data(field::id)[i] != id) continue;
+        const auto take = [&](const Field<double>& field) {
+            return dem::Vector3<>{set.data(field, 0)[i], set.data(field, 1)[i], set.data(field, 2)[i]};
+        };
+        return {take(field::position),
+                take(field::velocity),
+                take(field::angular_velocity),
+                set.data(field::radius)[i],
+                0,
+                set.data(field::body)[i]};
+    }
+    throw std::logic_error("no such grain on this rank");
+}
+
+}  // namespace talus::test

@@ -1,0 +1,32 @@
+#pragma once
+#include <vector>
+
+#include "physics/dem/laws/materials.hpp"
+#include "src/grain_simulation.hpp"
+
+namespace talus::test {
+
+/// One grain of a test.
+struct GrainState {
+    dem::Vector3<> position, velocity, angular_velocity;  ///< [m], [m/s], [rad/s]
+    double radius;                                        ///< [m]
+    double density;                                       ///< [kg/m3]
+    std::uint8_t body = 0;
+};
+
+double mass_of(const GrainState& grain);
+
+/// A Hertzian law of all pairs of materials, restitution taken as may_attract.
+dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials);
+
+/// A scene without walls, gravity or boundaries: one body for each material. The skin is a tenth of the
+/// radius.
+GrainSetup grain_setup(const std::vector<dem::GrainMaterial>& materials, double radius, double time_step);
+
+/// The grains, ids in order; rank r gets those with k mod size = r.
+ParticleSet grain_set(const Communicator& comm, const std::vector<GrainState>& grains);
+
+/// State of the grain with this id, which must be on this rank.
+GrainState state_of(const GrainSimulation& simulation, std::uint64_t id);
+
+}  // namespace talus::test

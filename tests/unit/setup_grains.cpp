@@ -1,0 +1,99 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "domain/grain_fields.hpp"
+#include "src/setup/grain_scene.hpp"
+
+/// Scenes of grains as a user writes them: what they give, and what is said about wrong ones.
+namespace talus::test {
+namespace {
+
+constexpr const char* scene_text = R"([box]
+boundaries = ["periodic", "periodic", "open"]
+lower = [0, 0, 0]
+upper = [0.1, 0.1, 1]
+[materials.glass]
+density = 2500
+youngs_modulus = 1e8
+poisson_ratio = 0.3
+restitution = 0.6
+friction = 0.5
+[dem]
+gravity = [0, 0, -9.81]
+time_step = 3e-6
+[[grains]]
+material = "glass"
+radius = 0.001
+shape = "box"
+lower = [0, 0, 0.01]
+upper = [0.05, 0.05, 0.05]
+spacing = 0.005
+[[wall]]
+name = "floor"
+material = "glass"
+point = [0, 0, 0]
+normal = [0, 0, 2]
+[run]
+end_time = 1
+)";
+
+std::string replaced(const std::string& from, const std::string& to) {
+    std::string text = scene_text;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+}
+
+GrainScene read(const std::string& text) {
+    const Communicator comm(MPI_COMM_SELF);
+    return read_grain_scene(comm, Scene::parse(text, "s.toml"));
+}
+
+std::string fault_of(const std::string& text) {
+    try {
+        read(text);
+    } catch (const SceneError& error) {
+        return error.what();
+    }
+    return "no fault";
+}
+
+void expect_fault(const std::string& from, const std::string& to, const std::string& fault) {
+    const std::string found = fault_of(replaced(from, to));
+    EXPECT_NE(found.find(fault), std::string::npos) << found;
+}
+
+TEST(SetupGrains, ReadsAScene) {
+    const Communicator comm(MPI_COMM_SELF);
+    const GrainScene scene = read(scene_text);
+    const ParticleSet grains = make_grains(comm, scene);
+    EXPECT_EQ(grains.size(), 10U * 10 * 8);
+    EXPECT_NEAR(grains.data(field::mass)[7], 2500 * 4.18879020478639e-9, 1e-18);
+    ASSERT_EQ(scene.simulation.walls.size(), 1U);
+    EXPECT_EQ(std::get<dem::PlaneShape>(scene.simulation.walls[0].shape).normal.z, 1);
+    // 0.3 pi r sqrt(rho/G) / (0.1631 nu + 0.8766), G = E / (2 (1 + nu))
+    EXPECT_NEAR(scene.greatest_time_step, 0.3 * 2.7366e-5, 1e-9);
+}
+
+TEST(SetupGrains, RefusesWhatCannotBe) {
+    expect_fault("restitution = 0.6", "restitution = 1.5", "s.toml:9: materials.glass.restitution = 1.5");
+    expect_fault("youngs_modulus = 1e8", "youngs_modulus = 0",
+                 "s.toml:7: materials.glass.youngs_modulus = 0");
+    expect_fault("time_step = 3e-6", "time_step = 3e-5", "s.toml:13: dem.time_step");
+    expect_fault("time_step = 3e-6", "time_step = 3e-5",
+                 "0.3 of the time in which a Rayleigh wave crosses a grain of 0.001 m");
+    expect_fault("gravity =", "law = \"linear\"\nstiffness = 0\ngravity =", "dem.stiffness = 0");
+    expect_fault("normal = [0, 0, 2]", "normal = [0, 1, 2]", "must be 0 along y, where the box is periodic");
+    expect_fault("upper = [0.1, 0.1, 1]", "upper = [0.1, 0.004, 1]", "two diameters of the largest grain");
+    expect_fault("\"periodic\", \"open\"", "\"reflecting\", \"open\"",
+                 "grains know open and periodic boundaries");
+    expect_fault("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"",
+                 "[[wall]]\nname = \"floor\"\nmaterial = \"glas\"", "there is no table [materials.glas]");
+    expect_fault("radius = 0.001", "radius = 0.001\nrolling_friction = 1", "rolling_friction");
+    expect_fault("[[wall]]", "[[contact]]\nmaterials = [\"glass\", \"steel\"]\n[[wall]]",
+                 "no grains and no wall are of 'steel'");
+}
+
+}  // namespace
+}  // namespace talus::test
