@@ -76,6 +76,27 @@ class Communicator {
         return value;
     }
 
+    /// A sum over ranks under way. `values` hold it once finish() has returned.
+    class PendingSum {
+      public:
+        explicit PendingSum(MPI_Request request) : request_(request) {}
+        PendingSum(const PendingSum&) = delete;
+        PendingSum& operator=(const PendingSum&) = delete;
+        ~PendingSum() { finish(); }
+        void finish() { MPI_Wait(&request_, MPI_STATUS_IGNORE); }
+
+      private:
+        MPI_Request request_;
+    };
+    /// Starts an element-wise sum in place; `values` must outlive what it returns. Other messages may pass
+    /// meanwhile.
+    [[nodiscard]] PendingSum all_sum_later(std::span<std::uint64_t> values) const {
+        MPI_Request request;
+        MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_UINT64_T, MPI_SUM,
+                       handle_, &request);
+        return PendingSum(request);
+    }
+
     /// Sum over the ranks before this one (0 on rank 0).
     std::uint64_t all_exclusive_sum(std::uint64_t value) const;
 

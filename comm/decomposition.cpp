@@ -11,32 +11,39 @@ namespace talus {
 Decomposition::Decomposition(const Communicator& comm, PartitionMethod method)
     : comm_(comm), method_(method), exchange_(comm), halo_(comm) {}
 
-Decomposition::Ledger Decomposition::count_particles(const ParticleSet& particles) const {
-    std::uint64_t sums[2] = {particles.size(), 0};
-    for (const std::uint64_t id : particles.own(field::id)) sums[1] += id;
-    comm_.all_sum(std::span<std::uint64_t>(sums));
-    return {sums[0], sums[1]};
+Decomposition::Ledger Decomposition::count_own(const ParticleSet& particles) {
+    Ledger ledger{{particles.size(), 0}};
+    for (const std::uint64_t id : particles.own(field::id)) ledger.sums[1] += id;
+    return ledger;
 }
 
-void Decomposition::expect(const ParticleSet& particles) { expected_ = count_particles(particles); }
+void Decomposition::expect(const ParticleSet& particles) {
+    expected_ = count_own(particles);
+    comm_.all_sum(std::span<std::uint64_t>(expected_.sums));
+}
 
 void Decomposition::arrange(ParticleSet& particles, const CellGrid& grid) {
     migrate(particles, grid);
     sort(particles);
     list_own_cells();
+    Ledger found = count_own(particles);
+    Communicator::PendingSum counting = comm_.all_sum_later(found.sums);
     std::vector<CellEntry> entries = halo_.plan(grid, partition_, own_cells_, particles);
     entries.insert(entries.end(), own_cells_.begin(), own_cells_.end());
     table_.build(std::move(entries), particles.dimension(), grid.reach());
+    counting.finish();
+    check(found, particles);
+}
 
-    const Ledger found = count_particles(particles);
-    if (found.count == expected_.count && found.id_sum == expected_.id_sum) return;
+void Decomposition::check(const Ledger& found, const ParticleSet& particles) const {
+    if (found == expected_) return;
     std::string message = fmt::format("particle set '{}': {} particles expected, {} found", particles.name(),
-                                      expected_.count, found.count);
-    if (found.count + 1 == expected_.count)
-        message += fmt::format("; lost: id {}", expected_.id_sum - found.id_sum);
-    else if (found.count == expected_.count + 1)
-        message += fmt::format("; found twice: id {}", found.id_sum - expected_.id_sum);
-    else if (found.count == expected_.count)
+                                      expected_.count(), found.count());
+    if (found.count() + 1 == expected_.count())
+        message += fmt::format("; lost: id {}", expected_.id_sum() - found.id_sum());
+    else if (found.count() == expected_.count() + 1)
+        message += fmt::format("; found twice: id {}", found.id_sum() - expected_.id_sum());
+    else if (found.count() == expected_.count())
         message += ", but not the same ids";
     throw AgreedError(1, message);
 }

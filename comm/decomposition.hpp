@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -33,7 +34,7 @@ class Decomposition {
 
     /// Collective. The number of particles over all ranks, fixed from now on: arrange() checks it.
     void expect(const ParticleSet& particles);
-    std::uint64_t total_particles() const { return expected_.count; }
+    std::uint64_t total_particles() const { return expected_.count(); }
 
     const CellTable& table() const { return table_; }
     const Partition& partition() const { return partition_; }
@@ -46,12 +47,17 @@ class Decomposition {
     int rebalance_count() const { return rebalance_count_; }
 
   private:
+    /// Number of particles and sum of their ids.
     struct Ledger {
-        std::uint64_t count = 0, id_sum = 0;
+        std::array<std::uint64_t, 2> sums{};
+        std::uint64_t count() const { return sums[0]; }
+        std::uint64_t id_sum() const { return sums[1]; }
+        bool operator==(const Ledger&) const = default;
     };
     using BlockWork = std::map<std::uint64_t, double>;
     bool deal(const BlockWork& mine, double least_gain);
-    Ledger count_particles(const ParticleSet& particles) const;
+    static Ledger count_own(const ParticleSet& particles);
+    void check(const Ledger& found, const ParticleSet& particles) const;
     void migrate(ParticleSet& particles, const CellGrid& grid);
     void sort(ParticleSet& particles);
     void list_own_cells();

@@ -69,8 +69,9 @@ void Halo::choose_cells(const CellGrid& grid, const Partition& partition, std::s
     OwnersWithinReach owners_within_reach(grid, partition);
     const auto send = [&](int rank, const CellEntry& entry, const Image& image) {
         const auto [at, is_new] = outgoing_of_rank.try_emplace(rank, outgoing_.size());
-        if (is_new) outgoing_.push_back({rank, {}, {}});
+        if (is_new) outgoing_.push_back({rank, {}, 0});
         outgoing_[at->second].cells.push_back({entry.begin, entry.end, image});
+        outgoing_[at->second].count += entry.end - entry.begin;
     };
     for (const CellEntry& entry : own) {
         const Cell cell = cell_of(entry.key);
@@ -115,7 +116,7 @@ std::vector<CellEntry> Halo::place_copies(const std::vector<Parcel>& parcels, Pa
         const std::size_t cells = parcel.bytes.size() / sizeof(CellHeader);
         const auto* header = reinterpret_cast<const CellHeader*>(parcel.bytes.data());
         for (std::size_t k = 0; k < cells; ++k) arrivals.push_back({header[k], incoming_.size(), k});
-        incoming_.push_back({parcel.rank, std::vector<Run>(cells), 0, {}});
+        incoming_.push_back({parcel.rank, std::vector<Run>(cells), 0});
     }
     std::sort(arrivals.begin(), arrivals.end(),
               [](const Arrival& a, const Arrival& b) { return a.header.key < b.header.key; });
@@ -133,14 +134,7 @@ std::vector<CellEntry> Halo::place_copies(const std::vector<Parcel>& parcels, Pa
     return copies;
 }
 
-void Halo::pack(Outgoing& outgoing) const {
-    std::size_t count = 0;
-    for (const SentCell& cell : outgoing.cells) count += cell.end - cell.begin;
-    std::size_t bytes = 0;
-    for (const FieldInfo* info : fields_)
-        bytes += particles_->column(*info).components.size() * size_of(info->type) * count;
-    outgoing.buffer.resize(bytes);
-    std::byte* to = outgoing.buffer.data();
+void Halo::pack(const Outgoing& outgoing, std::byte* to) const {
     for (const FieldInfo* info : fields_) {
         const Column& column = particles_->column(*info);
         for (std::size_t c = 0; c < column.components.size(); ++c) {
@@ -162,8 +156,7 @@ void Halo::pack(Outgoing& outgoing) const {
     }
 }
 
-void Halo::unpack(const Incoming& incoming) const {
-    const std::byte* from = incoming.buffer.data();
+void Halo::unpack(const Incoming& incoming, const std::byte* from) const {
     for (const FieldInfo* info : fields_) {
         Column& column = particles_->column(*info);
         for (auto& component : column.components)
@@ -189,33 +182,38 @@ void Halo::begin(ParticleSet& particles, std::initializer_list<const FieldInfo*>
     std::size_t particle_bytes = 0;
     for (const FieldInfo* info : fields_)
         particle_bytes += particles.column(*info).components.size() * size_of(info->type);
-    for (Incoming& incoming : incoming_) {
-        incoming.buffer.resize(incoming.count * particle_bytes);
+    const auto grow = [&](Buffers& buffers, std::size_t k, std::size_t count) {
+        if (buffers.size() <= k) buffers.resize(k + 1);
+        if (buffers[k].size() < count * particle_bytes) buffers[k].resize(count * particle_bytes);
+        return buffers[k].data();
+    };
+    for (std::size_t k = 0; k < incoming_.size(); ++k) {
+        const Incoming& incoming = incoming_[k];
+        std::byte* buffer = grow(received_, k, incoming.count);
         if (incoming.rank == comm_.rank()) continue;
-        MPI_Request request;
-        MPI_Irecv(incoming.buffer.data(), static_cast<int>(incoming.buffer.size()), MPI_BYTE, incoming.rank,
-                  tag, comm_.handle(), &request);
-        requests_.push_back(request);
+        MPI_Irecv(buffer, static_cast<int>(incoming.count * particle_bytes), MPI_BYTE, incoming.rank, tag,
+                  comm_.handle(), &requests_.emplace_back());
     }
-    for (Outgoing& outgoing : outgoing_) {
-        pack(outgoing);
+    for (std::size_t k = 0; k < outgoing_.size(); ++k) {
+        const Outgoing& outgoing = outgoing_[k];
+        const std::size_t bytes = outgoing.count * particle_bytes;
+        std::byte* buffer = grow(sent_, k, outgoing.count);
+        pack(outgoing, buffer);
         if (outgoing.rank == comm_.rank()) continue;
-        MPI_Request request;
-        MPI_Isend(outgoing.buffer.data(), static_cast<int>(outgoing.buffer.size()), MPI_BYTE, outgoing.rank,
-                  tag, comm_.handle(), &request);
-        requests_.push_back(request);
+        MPI_Isend(buffer, static_cast<int>(bytes), MPI_BYTE, outgoing.rank, tag, comm_.handle(),
+                  &requests_.emplace_back());
         ++messages_sent_;
-        bytes_sent_ += outgoing.buffer.size();
+        bytes_sent_ += bytes;
     }
 }
 
 void Halo::finish() {
     MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
-    for (Incoming& incoming : incoming_) {
-        if (incoming.rank == comm_.rank())
-            for (Outgoing& outgoing : outgoing_)
-                if (outgoing.rank == comm_.rank()) std::swap(incoming.buffer, outgoing.buffer);
-        unpack(incoming);
+    for (std::size_t k = 0; k < incoming_.size(); ++k) {
+        if (incoming_[k].rank == comm_.rank())
+            for (std::size_t own = 0; own < outgoing_.size(); ++own)
+                if (outgoing_[own].rank == comm_.rank()) std::swap(received_[k], sent_[own]);
+        unpack(incoming_[k], received_[k].data());
     }
 }
 

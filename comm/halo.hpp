@@ -39,24 +39,26 @@ class Halo {
     struct Outgoing {
         int rank;
         std::vector<SentCell> cells;
-        std::vector<std::byte> buffer;
+        std::size_t count = 0;  ///< particles
     };
     struct Incoming {
         int rank;
         std::vector<Run> slots;  ///< where each cell sent is put, in the sender's order
         std::size_t count = 0;   ///< particles
-        std::vector<std::byte> buffer;
     };
+    /// One for each of them, kept from plan to plan and never shrunk: new memory is dear.
+    using Buffers = std::vector<std::vector<std::byte>>;
 
     void choose_cells(const CellGrid& grid, const Partition& partition, std::span<const CellEntry> own);
     std::vector<CellEntry> place_copies(const std::vector<Parcel>& parcels, ParticleSet& particles);
-    void pack(Outgoing& outgoing) const;
-    void unpack(const Incoming& incoming) const;
+    void pack(const Outgoing& outgoing, std::byte* to) const;
+    void unpack(const Incoming& incoming, const std::byte* from) const;
 
     const Communicator& comm_;
     SparseExchange exchange_;
     std::vector<Outgoing> outgoing_;
     std::vector<Incoming> incoming_;
+    Buffers sent_, received_;
     ParticleSet* particles_ = nullptr;      ///< of the refresh under way
     std::vector<const FieldInfo*> fields_;  ///< of the refresh under way
     std::vector<MPI_Request> requests_;

@@ -28,7 +28,7 @@ enum class Cells : std::uint8_t { all, interior, boundary };
 /// partners visits cells in that order and particles in order of id within a cell, on any number of ranks.
 class CellTable {
   public:
-    /// `entries` in any order; marks the own cells that touch copies.
+    /// `entries` in any order; marks the own cells that touch copies and lists what each can reach.
     void build(std::vector<CellEntry> entries, int dimension, int reach);
 
     std::span<const CellEntry> cells() const { return cells_; }
@@ -37,28 +37,24 @@ class CellTable {
     /// covers the particles of all cells within reach, the cell's own included, in canonical order.
     template <class Visit>
     void for_each_own(Cells which, Visit&& visit) const {
-        Cursors cursors = start();
-        std::size_t own = 0;
-        for (const CellEntry& cell : cells_) {
-            if (cell.is_copy) continue;
-            const std::size_t k = own++;
+        for (std::size_t k = 0; k < own_.size(); ++k) {
+            const CellEntry& cell = cells_[own_[k].place];
             if (which == Cells::interior && cell.touches_copies) continue;
             if (which == Cells::boundary && !cell.touches_copies) continue;
-            visit(cell, collect(cursors, cell.key), k);
+            visit(cell,
+                  std::span<const Run>(runs_.data() + own_[k].first_run, runs_.data() + own_[k].end_run), k);
         }
     }
 
   private:
-    struct Cursors {
-        std::vector<std::uint32_t> first;  ///< one a row of cells: first entry that can still be reached
-        std::vector<Run> runs;
+    struct OwnCell {
+        std::uint32_t place;               ///< in cells_
+        std::uint32_t first_run, end_run;  ///< in runs_
     };
-    Cursors start() const;
-    std::span<const Run> collect(Cursors& cursors, CellKey key) const;
 
     std::vector<CellEntry> cells_;
-    std::vector<std::int64_t> row_offsets_;  ///< key of (dy, dz) relative to a cell, in order
-    int reach_ = 1;
+    std::vector<OwnCell> own_;
+    std::vector<Run> runs_;
 };
 
 }  // namespace talus

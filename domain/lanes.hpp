@@ -55,6 +55,14 @@ inline LaneMask first_lanes(std::size_t count) {
 
 inline Lanes load(const double* from) { return Lanes(from, std::experimental::element_aligned); }
 
+/// The first `count` of as many values as there are lanes, and zeros; no others are read.
+inline Lanes load_first(const double* from, std::size_t count) {
+    if (count >= lane_count) return load(from);
+    Lanes values = 0;
+    where(first_lanes(count), values).copy_from(from, std::experimental::element_aligned);
+    return values;
+}
+
 /// Values `c` and `c` + 1 of as many records as there are lanes: the first of each in the lanes of `first`.
 inline void load_two(const std::array<const double*, lane_count>& records, std::size_t c, Lanes& first,
                      Lanes& second) {
@@ -78,6 +86,33 @@ inline void load_two(const std::array<const double*, lane_count>& records, std::
 #else
     first = Lanes([&](auto lane) { return records[lane][c]; });
     second = Lanes([&](auto lane) { return records[lane][c + 1]; });
+#endif
+}
+
+/// The reverse of load_two().
+inline void store_two(const std::array<double*, lane_count>& records, std::size_t c, const Lanes& first,
+                      const Lanes& second) {
+#if defined(__AVX2__)
+    const auto store_halves = [&](const __m256d& pairs, std::size_t low, std::size_t high) {
+        _mm_storeu_pd(records[low] + c, _mm256_castpd256_pd128(pairs));
+        _mm_storeu_pd(records[high] + c, _mm256_extractf128_pd(pairs, 1));
+    };
+#endif
+#ifdef __AVX512VL__
+    const __m512d even = _mm512_unpacklo_pd(static_cast<__m512d>(first), static_cast<__m512d>(second)),
+                  odd = _mm512_unpackhi_pd(static_cast<__m512d>(first), static_cast<__m512d>(second));
+    store_halves(_mm512_castpd512_pd256(even), 0, 2);
+    store_halves(_mm512_extractf64x4_pd(even, 1), 4, 6);
+    store_halves(_mm512_castpd512_pd256(odd), 1, 3);
+    store_halves(_mm512_extractf64x4_pd(odd, 1), 5, 7);
+#elif defined(__AVX2__)
+    store_halves(_mm256_unpacklo_pd(static_cast<__m256d>(first), static_cast<__m256d>(second)), 0, 2);
+    store_halves(_mm256_unpackhi_pd(static_cast<__m256d>(first), static_cast<__m256d>(second)), 1, 3);
+#else
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+        records[lane][c] = first[lane];
+        records[lane][c + 1] = second[lane];
+    }
 #endif
 }
 

@@ -3,6 +3,7 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -135,30 +136,50 @@ std::vector<int> deal_scrambled(std::span<const Block> blocks, int ranks) {
     return owners;
 }
 
+std::vector<int> deal_bisection(std::span<const Block> blocks, int ranks) {
+    std::vector<int> owners(blocks.size());
+    std::vector<std::size_t> members(blocks.size());
+    std::iota(members.begin(), members.end(), std::size_t{0});
+    bisect(blocks, members, 0, ranks, owners);
+    return owners;
+}
+
+/// Calls visit(k, offset, neighbour) for each of the sorted blocks and each of its 26 neighbours among them,
+/// in the order of k; finish(k) after the neighbours of k.
+template <class Visit, class Finish>
+void for_each_neighbour(std::span<const Block> blocks, Visit&& visit, Finish&& finish) {
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        const Cell at = block_of(blocks[k].key);
+        for (int dz = -1; dz <= 1; ++dz)
+            for (int dy = -1; dy <= 1; ++dy)
+                for (int dx = -1; dx <= 1; ++dx) {
+                    if (dx == 0 && dy == 0 && dz == 0) continue;
+                    const std::uint64_t key = morton({at[0] + dx, at[1] + dy, at[2] + dz});
+                    const auto found = std::lower_bound(
+                        blocks.begin(), blocks.end(), key,
+                        [](const Block& block, std::uint64_t wanted) { return block.key < wanted; });
+                    if (found == blocks.end() || found->key != key) continue;
+                    visit(k, Cell{dx, dy, dz}, static_cast<std::size_t>(found - blocks.begin()));
+                }
+        finish(k);
+    }
+}
+
 std::vector<int> deal_metis(std::span<const Block> blocks, int ranks) {
     // Vertices: blocks, weighted by work. Edges: the 26 neighbours, weighted by the surface they share.
     std::vector<idx_t> starts{0}, neighbours, edge_weights, vertex_weights;
-    const auto find = [&](std::uint64_t key) {
-        const auto at = std::lower_bound(blocks.begin(), blocks.end(), key,
-                                         [](const Block& block, std::uint64_t k) { return block.key < k; });
-        return at != blocks.end() && at->key == key ? at - blocks.begin() : -1;
-    };
+    for_each_neighbour(
+        blocks,
+        [&](std::size_t, const Cell& offset, std::size_t neighbour) {
+            const int order = std::abs(offset[0]) + std::abs(offset[1]) + std::abs(offset[2]);
+            neighbours.push_back(static_cast<idx_t>(neighbour));
+            edge_weights.push_back(order == 1 ? 100 : order == 2 ? 10 : 1);
+        },
+        [&](std::size_t) { starts.push_back(static_cast<idx_t>(neighbours.size())); });
     double total = 0;
     for (const Block& block : blocks) total += block.work;
     const double scale = 1e6 / std::max(total / static_cast<double>(blocks.size()), 1e-300);
     for (const Block& block : blocks) {
-        const Cell at = block_of(block.key);
-        for (int dz = -1; dz <= 1; ++dz)
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx) {
-                    const int order = std::abs(dx) + std::abs(dy) + std::abs(dz);
-                    if (order == 0) continue;
-                    const auto k = find(morton({at[0] + dx, at[1] + dy, at[2] + dz}));
-                    if (k < 0) continue;
-                    neighbours.push_back(static_cast<idx_t>(k));
-                    edge_weights.push_back(order == 1 ? 100 : order == 2 ? 10 : 1);
-                }
-        starts.push_back(static_cast<idx_t>(neighbours.size()));
         const double weight = block.work * scale / (1 + static_cast<double>(blocks.size()) / 1000);
         vertex_weights.push_back(static_cast<idx_t>(std::clamp(weight, 1.0, 1e8)));
     }
@@ -210,29 +231,67 @@ void relabel(std::span<const Block> blocks, std::span<const int> previous, int r
 std::vector<int> deal_blocks(PartitionMethod method, std::span<const Block> blocks, int ranks,
                              std::span<const int> previous) {
     if (ranks == 1 || blocks.empty()) return std::vector<int>(blocks.size(), 0);
-    std::vector<int> owners(blocks.size());
     if (method == PartitionMethod::scrambled) return deal_scrambled(blocks, ranks);
     if (method == PartitionMethod::slabs) return deal_slabs(blocks, ranks);
     const bool few = blocks.size() <= 2 * static_cast<std::size_t>(ranks);
+    std::vector<int> owners;
     if (method == PartitionMethod::metis && !few) {
         owners = deal_metis(blocks, ranks);
     } else {
-        std::vector<std::size_t> members(blocks.size());
-        std::iota(members.begin(), members.end(), std::size_t{0});
-        bisect(blocks, members, 0, ranks, owners);
+        owners = deal_bisection(blocks, ranks);
+        if (method == PartitionMethod::cheapest && !few) {
+            std::vector<int> other = deal_metis(blocks, ranks);
+            if (greatest_burden(blocks, other, ranks) < greatest_burden(blocks, owners, ranks))
+                owners = std::move(other);
+        }
     }
     if (!previous.empty()) relabel(blocks, previous, ranks, owners);
     return owners;
 }
 
-double imbalance(std::span<const Block> blocks, std::span<const int> owners, int ranks) {
+namespace {
+std::vector<double> work_of_ranks(std::span<const Block> blocks, std::span<const int> owners, int ranks) {
     std::vector<double> work(static_cast<std::size_t>(ranks), 0.0);
-    double total = 0;
-    for (std::size_t k = 0; k < blocks.size(); ++k) {
+    for (std::size_t k = 0; k < blocks.size(); ++k)
         work[static_cast<std::size_t>(owners[k])] += blocks[k].work;
-        total += blocks[k].work;
+    return work;
+}
+
+/// The eighths of a block within half a block's reach of its neighbour in a direction, as bits.
+unsigned eighths_next_to(const Cell& offset) {
+    unsigned bits = 0;
+    for (unsigned eighth = 0; eighth < 8; ++eighth) {
+        bool near = true;
+        for (std::size_t a = 0; a < 3; ++a)
+            if (offset[a] != 0 && (eighth >> a & 1) != (offset[a] > 0 ? 1u : 0u)) near = false;
+        if (near) bits |= 1u << eighth;
     }
+    return bits;
+}
+}  // namespace
+
+double imbalance(std::span<const Block> blocks, std::span<const int> owners, int ranks) {
+    const std::vector<double> work = work_of_ranks(blocks, owners, ranks);
+    const double total = std::accumulate(work.begin(), work.end(), 0.0);
     return total > 0 ? *std::max_element(work.begin(), work.end()) * ranks / total : 1.0;
+}
+
+double greatest_burden(std::span<const Block> blocks, std::span<const int> owners, int ranks) {
+    constexpr double cost_of_copy = 1.0 / 7;  // measured, docs/decisions/012
+    std::vector<double> burden = work_of_ranks(blocks, owners, ranks);
+    std::map<int, unsigned> copied;  // eighths of the block that other ranks need
+    for_each_neighbour(
+        blocks,
+        [&](std::size_t k, const Cell& offset, std::size_t neighbour) {
+            if (owners[neighbour] != owners[k]) copied[owners[neighbour]] |= eighths_next_to(offset);
+        },
+        [&](std::size_t k) {
+            for (const auto& [rank, eighths] : copied)
+                burden[static_cast<std::size_t>(rank)] +=
+                    cost_of_copy * blocks[k].work * std::popcount(eighths) / 8;
+            copied.clear();
+        });
+    return *std::max_element(burden.begin(), burden.end());
 }
 
 }  // namespace talus

@@ -8,9 +8,10 @@
 
 namespace talus {
 
-/// How blocks of cells are dealt to ranks. `metis` and `bisection` balance work; `slabs` (by x) and
-/// `scrambled` (pseudo-random, the worst possible surface) exist to show that results do not depend on it.
-enum class PartitionMethod : std::uint8_t { metis, bisection, slabs, scrambled };
+/// How blocks of cells are dealt to ranks. `metis` and `bisection` balance work, `cheapest` is the one of
+/// them with the smaller greatest_burden(); `slabs` (by x) and `scrambled` (pseudo-random, the worst possible
+/// surface) exist to show that results do not depend on it.
+enum class PartitionMethod : std::uint8_t { cheapest, metis, bisection, slabs, scrambled };
 
 /// A cube of cells, the unit that a rank owns, and the work measured in it.
 struct Block {
@@ -58,5 +59,10 @@ std::vector<int> deal_blocks(PartitionMethod method, std::span<const Block> bloc
 
 /// Largest work of a rank over the mean.
 double imbalance(std::span<const Block> blocks, std::span<const int> owners, int ranks);
+
+/// Work of the busiest rank, the copies that it needs of others' particles included, in the unit of work:
+/// each costs a seventh of the work on the particle itself, and blocks are taken to be two cells a side and
+/// evenly filled.
+double greatest_burden(std::span<const Block> blocks, std::span<const int> owners, int ranks);
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "comm/exact_sum.hpp"
@@ -14,7 +15,8 @@ namespace talus {
 
 namespace {
 constexpr int cells_per_radius = 1;
-constexpr double room_to_grow = 1.3;  // of the largest smoothing length in a step
+constexpr double pairs_worth_a_particle = 20;  // what costs the same as all but pairs: docs/decisions/012
+constexpr double room_to_grow = 1.3;           // of the largest smoothing length in a step
 
 bool has_strength(const Setup& setup) {
     return std::any_of(setup.materials.begin(), setup.materials.end(),
@@ -78,6 +80,10 @@ double Simulation::interaction_radius() const {
     return comm_.all_max(largest) * range_of_interaction();
 }
 
+double Simulation::work() const {
+    return std::accumulate(pass_count_.work_of_cell.begin(), pass_count_.work_of_cell.end(), 0.0);
+}
+
 double Simulation::range_of_interaction() const {
     return std::max(setup_.sph.force_support(), setup_.sph.kernel_support() * setup_.sph.smoothing_widening);
 }
@@ -131,8 +137,7 @@ void Simulation::start() {
     enter_late_phase_when_due();
     arrange();
     evaluate(0, 0);
-    check_finite();
-    choose_time_step();
+    conclude_step();
     time_step_ = std::min(time_step_, setup_.first_time_step);
 }
 
@@ -161,8 +166,7 @@ void Simulation::step() {
     sph::kick(particles_, shear_moduli_, setup_.sph, dt / 2);
     time_ += dt;
     ++step_;
-    check_finite();
-    choose_time_step();
+    conclude_step();
     enter_late_phase_when_due();
     phases_.stop();
 }
@@ -225,6 +229,9 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
         phases_.enter(Phase::gravity);
         gravity_->evaluate(particles_, *grid_, decomposition_, pass_count_.work_of_cell);
     }
+    const std::span<const CellEntry> cells = decomposition_.own_cells();
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);
     hold_bodies();
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
@@ -288,31 +295,31 @@ void Simulation::hold_bodies() {
         if (setup_.held[body[i]]) power[i] = 0;
 }
 
-void Simulation::choose_time_step() {
+/// Agrees on the next time step, and that the state is finite: one reduction for both.
+void Simulation::conclude_step() {
     limit_ = sph::stable_time_step(particles_, shear_moduli_, setup_.sph);
     if (damage_limit_ < limit_.time_step) limit_ = {damage_limit_, limit_.id, "damage growth"};
     if (gravity_) {
         const sph::StepLimit by_gravity = gravity::stable_time_step(particles_, *setup_.gravity);
         if (by_gravity.time_step < limit_.time_step) limit_ = by_gravity;
     }
+    const sph::NotFinite found = sph::find_not_finite(particles_);
     phases_.enter(Phase::wait);
-    time_step_ = comm_.all_min(limit_.time_step);
+    std::array<double, 2> least = {found.field ? 0.0 : 1.0, limit_.time_step};
+    comm_.all_min(std::span<double>(least));
+    std::string message;
+    if (least[0] == 0) {
+        if (found.field)
+            message = fmt::format("step {}, time {} s: {} of particle {} in set '{}' is not finite", step_,
+                                  time_, found.field->name, found.id, particles_.name());
+        comm_.all_agree(1, message);
+    }
+    time_step_ = least[1];
     if (time_ + time_step_ > time_) return;
-    std::string message;  // the time would stand still for ever
-    if (limit_.time_step == time_step_)
+    if (limit_.time_step == time_step_)  // the time would stand still for ever
         message =
             fmt::format("step {}, time {} s: the time step has fallen to {} s, limited by {} at particle {}",
                         step_, time_, time_step_, limit_.reason, limit_.id);
-    comm_.all_agree(1, message);
-}
-
-void Simulation::check_finite() {
-    const sph::NotFinite found = sph::find_not_finite(particles_);
-    std::string message;
-    if (found.field)
-        message = fmt::format("step {}, time {} s: {} of particle {} in set '{}' is not finite", step_, time_,
-                              found.field->name, found.id, particles_.name());
-    phases_.enter(Phase::wait);
     comm_.all_agree(1, message);
 }
 

@@ -29,7 +29,7 @@ struct Setup {
     std::optional<gravity::Settings> gravity;  ///< none: no self-gravity
     std::vector<Material> materials;           ///< one a body, in order
     std::vector<bool> held;                    ///< one a body: its particles never move; empty: none
-    PartitionMethod partition = PartitionMethod::metis;
+    PartitionMethod partition = PartitionMethod::cheapest;
     double largest_damage_step = 0.1;  ///< D^(1/3) may grow by this much a step [1]
     double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
     int rebalance_interval = 10;          ///< steps between looks at the imbalance
@@ -93,7 +93,10 @@ class Simulation {
     std::uint64_t pairs() const { return pairs_; }
     /// What self-gravity did on this rank since the start; nullptr: there is none.
     const gravity::Counts* gravity_counts() const { return gravity_ ? &gravity_->counts() : nullptr; }
+    /// Work of this rank at the last evaluation, in pairs: what decomposition balances.
+    double work() const;
     Phases& phases() { return phases_; }
+    const Phases& phases() const { return phases_; }
     /// Starts counting pairs and time anew.
     void reset_counters() {
         pairs_ = 0;
@@ -117,8 +120,7 @@ class Simulation {
     void hold_bodies();
     void soften_materials();
     void enter_late_phase_when_due();
-    void choose_time_step();
-    void check_finite();
+    void conclude_step();
 
     const Communicator& comm_;
     Setup setup_;

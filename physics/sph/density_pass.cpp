@@ -56,7 +56,7 @@ class DensitySum {
 
   private:
     static constexpr std::size_t place_mass = D;
-    static void as_copied(std::size_t, std::array<double, D + 1>&) {}
+    static constexpr auto as_copied = [](const Neighbours&, auto&) {};
 
     const Kernel kernel_;
     const double* h_;

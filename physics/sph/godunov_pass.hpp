@@ -59,14 +59,16 @@ class GodunovPass {
 
     /// Sets what is not copied from a field.
     auto finish() const {
-        return [gradient = velocity_gradient_, bodies = body_](std::size_t k, auto& values) {
-            [[maybe_unused]] const std::uint8_t* body = bodies;
+        return [gradient = velocity_gradient_, bodies = body_](const Neighbours& some, auto& values) {
             for (int a = 0; a < D; ++a)
                 for (int b = a; b < D; ++b)
                     values[Places::strain_rate + symmetric_index<D>(a, b)] =
-                        0.5 * (gradient[a * D + b][k] + gradient[b * D + a][k]);
+                        0.5 * (some.of(gradient[a * D + b]) + some.of(gradient[b * D + a]));
             values[Places::specific_volume] = 1 / values[Places::density];
-            if constexpr (Options::bodies) values[Places::body] = body ? body[k] : 0;
+            if constexpr (Options::bodies)
+                values[Places::body] = Lanes([&](std::size_t lane) -> double {
+                    return bodies && lane < some.number ? bodies[some.first + lane] : 0;
+                });
         };
     }
 

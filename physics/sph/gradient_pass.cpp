@@ -63,7 +63,7 @@ class GradientPass {
 
     /// Sets what is not copied from a field.
     auto finish() const {
-        return [](std::size_t, auto&) {};
+        return [](const Neighbours&, auto&) {};
     }
 
     [[gnu::flatten]] GradientSums<double, D> sum_over_partners(std::uint32_t i) const {

@@ -18,7 +18,16 @@ namespace talus::sph {
 /// for each of its values.
 template <std::size_t count>
 struct alignas(32) PairRecord {
-    std::array<double, count> values;
+    std::array<double, count + count % 2> values;  // read and written two at a time
+};
+
+/// Particles that lie one after the other, no more than there are lanes: their records are made at once.
+struct Neighbours {
+    std::uint32_t first;
+    std::size_t number;
+
+    /// Their values of a field's component; zeros behind them.
+    Lanes of(const double* component) const { return load_first(component + first, number); }
 };
 
 /// One record in every lane.
@@ -54,7 +63,7 @@ class PairRecords {
             }
         });
         list_needed(begun);
-        ring_ = std::bit_ceil(longest);
+        ring_ = std::bit_ceil(longest + static_cast<std::uint32_t>(lane_count));  // see enter()
         copies_ = any && which != Cells::interior ? particles.halo_size() : 0;
         records_ = std::make_unique_for_overwrite<PairRecord<count>[]>(ring_ + copies_);
     }
@@ -64,18 +73,21 @@ class PairRecords {
     void copy(std::size_t place, const std::array<const double*, components>& from) {
         for (std::size_t c = 0; c < components; ++c) columns_[place + c] = from[c];
     }
-    /// Fills the records of the copies; finish(k, values) sets what is not copied.
+    /// Fills the records of the copies; finish(neighbours, values) sets what is not copied, a particle in
+    /// each lane.
     template <class Finish>
     void fill_copies(Finish&& finish) {
-        for (std::size_t k = own_; k < own_ + copies_; ++k) fill(static_cast<std::uint32_t>(k), finish);
+        Run rest{own_, own_ + static_cast<std::uint32_t>(copies_)};
+        while (rest.begin < rest.end) fill_some(rest, finish);
     }
-    /// Moves the window on to a cell with these runs. Cells must come in their order.
+    /// Moves the window on to a cell with these runs, or a few particles further. Cells must come in their
+    /// order.
     template <class Finish>
     void enter(std::span<const Run> runs, Finish&& finish) {
         const std::uint32_t end = own_window(runs).end;
         for (; next_ < needed_.size(); ++next_) {
             Run& rest = needed_[next_];
-            for (; rest.begin < std::min(rest.end, end); ++rest.begin) fill(rest.begin, finish);
+            while (rest.begin < std::min(rest.end, end)) fill_some(rest, finish);
             if (rest.begin < rest.end) return;
         }
     }
@@ -87,12 +99,12 @@ class PairRecords {
         std::array<Lanes, count> lanes;
         std::array<const double*, lane_count> from;
         for (std::size_t lane = 0; lane < lane_count; ++lane) from[lane] = (*this)[index[lane]].values.data();
+        Lanes none;
         [&]<std::size_t... pair>(std::index_sequence<pair...>) {
-            (load_two(from, 2 * pair, lanes[2 * pair], lanes[2 * pair + 1]), ...);
+            (load_two(from, 2 * pair, lanes[2 * pair], 2 * pair + 1 < count ? lanes[2 * pair + 1] : none),
+             ...);
         }
-        (std::make_index_sequence<count / 2>{});
-        if constexpr (count % 2 == 1)
-            lanes[count - 1] = Lanes([&](auto lane) { return from[lane][count - 1]; });
+        (std::make_index_sequence<(count + 1) / 2>{});
         return lanes;
     }
 
@@ -120,12 +132,23 @@ class PairRecords {
     }
     std::size_t slot(std::uint32_t k) const { return k < own_ ? k & (ring_ - 1) : ring_ + (k - own_); }
 
+    /// Fills records from rest.begin on, as many as there are lanes if there are, and moves rest.begin.
     template <class Finish>
-    void fill(std::uint32_t k, Finish& finish) {
-        auto& values = records_[slot(k)].values;
+    void fill_some(Run& rest, Finish& finish) {
+        const Neighbours some{rest.begin, std::min<std::size_t>(rest.end - rest.begin, lane_count)};
+        std::array<Lanes, count + 1> values;
         for (std::size_t c = 0; c < count; ++c)
-            if (columns_[c]) values[c] = columns_[c][k];
-        finish(k, values);
+            if (columns_[c]) values[c] = some.of(columns_[c]);
+        values[count] = 0;
+        finish(some, values);
+        std::array<PairRecord<count>, lane_count> spare;  // for lanes without a particle
+        std::array<double*, lane_count> to;
+        for (std::size_t lane = 0; lane < lane_count; ++lane)
+            to[lane] = (lane < some.number ? records_[slot(some.first + static_cast<std::uint32_t>(lane))]
+                                           : spare[lane])
+                           .values.data();
+        for (std::size_t c = 0; c < count; c += 2) store_two(to, c, values[c], values[c + 1]);
+        rest.begin += static_cast<std::uint32_t>(some.number);
     }
 
     std::array<const double*, count> columns_{};

@@ -54,11 +54,11 @@ class StandardPass {
     using Values = std::array<Lanes, record_size>;
 
     /// Sets what is not copied from a field.
-    static void finish(std::size_t, std::array<double, record_size>& values) {
+    static constexpr auto finish = [](const Neighbours&, auto& values) {
         values[place_inverse_h] = 1 / values[place_h];
-        const double inverse_density2 = 1 / (values[place_density] * values[place_density]);
+        const Lanes inverse_density2 = 1 / (values[place_density] * values[place_density]);
         for (std::size_t c = place_pressure; c < record_size; ++c) values[c] *= inverse_density2;
-    }
+    };
 
     /// The traction of a particle's own stress along r, over its density squared.
     static Vector<Lanes, D> traction(const Values& values, const Lanes& pressure, const Vector<Lanes, D>& r) {

@@ -207,7 +207,7 @@ LinkedParticles link_particles(const Communicator& comm, const Box& box, const P
     if (comm.all_sum(static_cast<std::uint64_t>(set.size())) == 0) return linked;
 
     const CellGrid grid(box, *std::max_element(rules.linking_length.begin(), rules.linking_length.end()), 1);
-    Decomposition decomposition(comm, PartitionMethod::metis);
+    Decomposition decomposition(comm, PartitionMethod::cheapest);
     decomposition.expect(set);
     decomposition.divide(set, grid);
     decomposition.arrange(set, grid);

@@ -14,6 +14,7 @@
 #include "io/csv.hpp"
 #include "io/progress.hpp"
 #include "io/snapshot.hpp"
+#include "src/run/performance_log.hpp"
 #include "src/run/warnings.hpp"
 
 namespace talus {
@@ -104,6 +105,7 @@ std::filesystem::path set_aside(const std::filesystem::path& folder, const std::
 struct Recorder::Files {
     std::shared_ptr<spdlog::logger> log;
     std::unique_ptr<CsvWriter> diagnostics;
+    std::unique_ptr<PerformanceLog> performance;
     std::unique_ptr<Progress> progress;
 };
 
@@ -158,9 +160,11 @@ void Recorder::begin(Simulation& simulation, double end_time) {
     }
     if (comm_.is_root())
         for (const std::string& warning : warnings(setup_)) files_->log->warn("note: {}", warning);
-    files_->diagnostics = std::make_unique<CsvWriter>(
-        comm_, folder_ / "diagnostics.csv", diagnostics_columns(setup_.simulation),
-        is_new_ ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count()));
+    const std::optional<std::uint64_t> restart_step =
+        is_new_ ? std::nullopt : std::optional<std::uint64_t>(simulation.step_count());
+    files_->diagnostics = std::make_unique<CsvWriter>(comm_, folder_ / "diagnostics.csv",
+                                                      diagnostics_columns(setup_.simulation), restart_step);
+    files_->performance = std::make_unique<PerformanceLog>(comm_, folder_, restart_step);
     if (is_new_) {
         write_diagnostics(simulation);
         write_snapshot_now(simulation, 0);
@@ -168,13 +172,17 @@ void Recorder::begin(Simulation& simulation, double end_time) {
     }
     files_->progress = std::make_unique<Progress>(comm_.is_root(), Progress::Goal{end_time, {}});
     simulation.reset_counters();
+    files_->performance->begin(simulation);
     began_ = step_began_ = last_checkpoint_time_ = std::chrono::steady_clock::now();
 }
 
 void Recorder::after_step(Simulation& simulation) {
     const double time = simulation.time();
     simulation.phases().enter(Phase::output);
-    if (fell_due(time_before_, time, setup_.output.diagnostics_interval)) write_diagnostics(simulation);
+    if (fell_due(time_before_, time, setup_.output.diagnostics_interval)) {
+        write_diagnostics(simulation);
+        files_->performance->write(simulation);
+    }
     if (const double interval = setup_.output.snapshot_interval;
         interval > 0 && fell_due(time_before_, time, interval))
         write_snapshot_now(simulation, static_cast<std::uint64_t>(time / interval));
@@ -314,6 +322,7 @@ void Recorder::write_performance(const Simulation& simulation, const PhaseTimer&
 }
 
 void Recorder::print_summary(Simulation& simulation) {
+    files_->performance->write(simulation);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
     PhaseTimer timer;
     for (std::size_t p = 0; p < phase_names.size(); ++p)

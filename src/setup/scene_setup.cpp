@@ -140,11 +140,12 @@ std::optional<LatePhase> read_late_phase(const Section& root, const Setup& simul
 
 PartitionMethod read_partition(const Section& table) {
     const std::string name =
-        table.choice("decomposition", {"metis", "bisection", "slabs", "scrambled"}, "metis");
+        table.choice("decomposition", {"cheapest", "metis", "bisection", "slabs", "scrambled"}, "cheapest");
+    if (name == "metis") return PartitionMethod::metis;
     if (name == "bisection") return PartitionMethod::bisection;
     if (name == "slabs") return PartitionMethod::slabs;
     if (name == "scrambled") return PartitionMethod::scrambled;
-    return PartitionMethod::metis;
+    return PartitionMethod::cheapest;
 }
 
 void refuse_outside(const Section& table, const Body& body, const Box& box) {

@@ -3,6 +3,7 @@
 usage: program.py PROGRAM MPIRUN RUNS_FOLDER [-k PATTERN]
 Exit codes: 0 done, 1 run-time failure, 2 bad scene or usage, 3 input/output, 75 stopped early with a checkpoint.
 """
+import json
 import os
 import pathlib
 import re
@@ -305,6 +306,37 @@ class DamagedCheckpoints(Case):
         self.assert_fails(talus(*options, ".", cwd=self.folder), 3, "is the working folder", "name another --out")
         self.assert_fails(talus(*options, self.folder, ranks=0), 3, "the scene", "name another --out")
         self.assertEqual(self.hash(self.folder), before)
+
+
+class PerformanceTable(Case):
+    def rows(self):
+        lines = (self.out / "performance.csv").read_text().splitlines()
+        names = [name.split(" [")[0] for name in lines[0].split(",")]
+        return [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
+
+    def run_to(self, step, *options):
+        done = talus("run", SCENE, "--quick", "--steps", step, "--out", self.out, "--set", "output.diagnostics=1e-9",
+                     "--set", "run.rebalance_interval=4", *options)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return json.loads((self.out / "performance.json").read_text())
+
+    def test_its_rows_add_up_and_go_on_after_a_restart(self):
+        total = self.run_to(9)
+        rows = self.rows()
+        self.assertEqual([row["step"] for row in rows], list(range(1, 10)))
+        for phase, seconds in total["phase_seconds"].items():
+            if phase != "output":  # the last rows are still to be written
+                self.assertAlmostEqual(sum(row[phase.replace(" ", "_")] for row in rows), seconds, delta=1e-5 * seconds)
+        self.assertEqual(rows[-1]["copies_of_a_rank"], total["copies_of_a_rank"])
+        self.assertGreater(rows[-1]["copies_of_a_rank"], 0)
+        for row in rows:
+            self.assertEqual(row["ranks"], 2)
+            self.assertGreater(row["halo_bytes"], 100 * row["copies_of_a_rank"])
+            self.assertGreaterEqual(row["imbalance_of_time"], 1)
+            self.assertTrue(1 <= row["imbalance"] < 1.1, row["imbalance"])  # what a run may have
+        self.run_to(12, "--restart", "latest")
+        self.assertEqual(self.rows()[:9], rows)
+        self.assertEqual([row["step"] for row in self.rows()], list(range(1, 13)))
 
 
 if __name__ == "__main__":

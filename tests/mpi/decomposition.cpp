@@ -14,8 +14,9 @@
 namespace talus::test {
 namespace {
 
-constexpr PartitionMethod methods[] = {PartitionMethod::metis, PartitionMethod::bisection,
-                                       PartitionMethod::slabs, PartitionMethod::scrambled};
+constexpr PartitionMethod methods[] = {PartitionMethod::cheapest, PartitionMethod::metis,
+                                       PartitionMethod::bisection, PartitionMethod::slabs,
+                                       PartitionMethod::scrambled};
 constexpr RandomStream draws{.seed = 31};
 
 /// All particles on the last rank: the others start empty.

@@ -12,8 +12,9 @@
 namespace talus::test {
 namespace {
 
-constexpr PartitionMethod methods[] = {PartitionMethod::metis, PartitionMethod::bisection,
-                                       PartitionMethod::slabs, PartitionMethod::scrambled};
+constexpr PartitionMethod methods[] = {PartitionMethod::cheapest, PartitionMethod::metis,
+                                       PartitionMethod::bisection, PartitionMethod::slabs,
+                                       PartitionMethod::scrambled};
 
 /// The particles of a cloud spread over ranks, copies refreshed.
 struct Spread {
@@ -185,7 +186,8 @@ Cloud cube(int n) {
 
 TEST(HaloTraffic, OneMessageForEachNeighbourAndNoMore) {
     const Communicator comm(MPI_COMM_WORLD);
-    for (const PartitionMethod method : {PartitionMethod::metis, PartitionMethod::bisection}) {
+    for (const PartitionMethod method :
+         {PartitionMethod::cheapest, PartitionMethod::metis, PartitionMethod::bisection}) {
         Spread spread(comm, cube(24), method);
         Halo& halo = spread.decomposition.halo();
         const std::uint64_t messages = halo.messages_sent(), bytes = halo.bytes_sent();

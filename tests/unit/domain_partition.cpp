@@ -12,8 +12,9 @@ namespace talus {
 namespace {
 
 constexpr RandomStream draws{.seed = 41};
-constexpr PartitionMethod methods[] = {PartitionMethod::metis, PartitionMethod::bisection,
-                                       PartitionMethod::slabs, PartitionMethod::scrambled};
+constexpr PartitionMethod methods[] = {PartitionMethod::cheapest, PartitionMethod::metis,
+                                       PartitionMethod::bisection, PartitionMethod::slabs,
+                                       PartitionMethod::scrambled};
 
 std::vector<Block> sorted(std::vector<Block> blocks) {
     std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.key < b.key; });
@@ -97,6 +98,47 @@ TEST(DealBlocks, BalancesWorkThatVariesAThousandfold) {
     }
 }
 
+TEST(DealBlocks, BurdenCountsTheCopiesOfEachRank) {
+    // A row of blocks along x with a corner neighbour at its end. Work 8 each; an eighth of a seventh of it
+    // is 1/7 for each eighth of a block that is copied.
+    const std::vector<Block> blocks = sorted({{block_key_of({0, 0, 0}, 0), 8.0},
+                                              {block_key_of({1, 0, 0}, 0), 8.0},
+                                              {block_key_of({2, 1, 1}, 0), 8.0}});
+    const auto owned = [&](int first, int second, int third) {
+        std::vector<int> owners;
+        for (const Block& block : blocks) {
+            const int x = block_of(block.key)[0];
+            owners.push_back(x == 0 ? first : x == 1 ? second : third);
+        }
+        return owners;
+    };
+    EXPECT_DOUBLE_EQ(greatest_burden(blocks, owned(0, 0, 0), 2), 24);
+    EXPECT_DOUBLE_EQ(greatest_burden(blocks, owned(0, 0, 1), 2), 16 + 1 / 7.0);  // a corner
+    EXPECT_DOUBLE_EQ(greatest_burden(blocks, owned(0, 1, 1), 2), 16 + 4 / 7.0);  // a face
+    EXPECT_DOUBLE_EQ(greatest_burden(blocks, owned(0, 1, 0), 2), 16 + 5 / 7.0);  // both, of one block
+    EXPECT_DOUBLE_EQ(greatest_burden(blocks, owned(0, 1, 2), 3), 8 + 5 / 7.0);
+}
+
+TEST(DealBlocks, CheapestIsTheCheaperOfTwo) {
+    std::vector<Block> ring;  // bisection is cheaper in the cube, METIS in a ring
+    for (const Block& block : cube(24, 1)) {
+        const Cell at = block_of(block.key);
+        if (std::abs(std::hypot(at[0], at[1]) - 9) < 2 && std::abs(at[2]) < 2) ring.push_back(block);
+    }
+    std::set<PartitionMethod> chosen;
+    for (const auto& blocks : {cube(18, 0.5), ring})
+        for (const int ranks : {2, 3, 5, 8}) {
+            const auto burden = [&](PartitionMethod method) {
+                return greatest_burden(blocks, deal_blocks(method, blocks, ranks, {}), ranks);
+            };
+            const double metis = burden(PartitionMethod::metis),
+                         bisection = burden(PartitionMethod::bisection);
+            EXPECT_EQ(burden(PartitionMethod::cheapest), std::min(metis, bisection));
+            chosen.insert(metis < bisection ? PartitionMethod::metis : PartitionMethod::bisection);
+        }
+    EXPECT_EQ(chosen.size(), 2u);
+}
+
 TEST(DealBlocks, WorkOfNothing) {
     std::vector<Block> blocks = cube(6, 1);
     for (Block& block : blocks) block.work = 0;
@@ -134,7 +176,8 @@ TEST(DealBlocks, IsDeterministic) {
 
 TEST(DealBlocks, MostWorkStaysWhereItWas) {
     std::vector<Block> blocks = cube(20, 0.5);
-    for (const PartitionMethod method : {PartitionMethod::metis, PartitionMethod::bisection})
+    for (const PartitionMethod method :
+         {PartitionMethod::cheapest, PartitionMethod::metis, PartitionMethod::bisection})
         for (const int ranks : {2, 3, 5, 8}) {
             const auto before = deal_blocks(method, blocks, ranks, {});
             // Work moves a little; and the former owners have other names than the parts.
@@ -165,7 +208,8 @@ TEST(DealBlocks, SameWorkMovesNothing) {
 /// The number of ranks that a rank talks to is that of a compact body's neighbours, however many there are.
 TEST(DealBlocks, NeighboursOfAPartDoNotGrowWithTheRanks) {
     const std::vector<Block> blocks = cube(24, 1);
-    for (const PartitionMethod method : {PartitionMethod::metis, PartitionMethod::bisection})
+    for (const PartitionMethod method :
+         {PartitionMethod::cheapest, PartitionMethod::metis, PartitionMethod::bisection})
         for (const int ranks : {8, 27, 64, 216}) {
             const auto owners = deal_blocks(method, blocks, ranks, {});
             std::map<std::uint64_t, int> owner_of;
