@@ -117,7 +117,8 @@ TEST(WallShapes, RevolvedSheetAndItsTrianglesAgree) {
             continue;
         std::vector<SurfaceContact> contacts;
         surface.near(centre, reach, triangles);
-        surface.find_contacts(triangles, centre, reach, contacts);
+        std::vector<TriangleSurface::Nearest> room;
+        surface.find_contacts(triangles, centre, reach, room, contacts);
         ++touching;
         const auto nearest = std::ranges::min_element(contacts, {}, &SurfaceContact::distance);
         ASSERT_NE(nearest, contacts.end());

@@ -21,7 +21,8 @@ std::vector<SurfaceContact> touch(const TriangleSurface& surface, const Vector3<
     std::vector<std::uint32_t> triangles;
     std::vector<SurfaceContact> contacts;
     surface.near(centre, reach, triangles);
-    surface.find_contacts(triangles, centre, reach, contacts);
+    std::vector<TriangleSurface::Nearest> nearest;
+    surface.find_contacts(triangles, centre, reach, nearest, contacts);
     return contacts;
 }
 /// An irregular net of 2 n^2 triangles over the square of half side `half`: at (x, y), as `place` says.
@@ -245,8 +246,9 @@ TEST(TriangleSheets, NearFindsAllTriangles) {
             surface.near(centre, reach, found);
             EXPECT_TRUE(std::ranges::is_sorted(found));
             std::vector<SurfaceContact> by_cells, by_force;
-            surface.find_contacts(found, centre, reach, by_cells);
-            surface.find_contacts(all, centre, reach, by_force);
+            std::vector<TriangleSurface::Nearest> nearest;
+            surface.find_contacts(found, centre, reach, nearest, by_cells);
+            surface.find_contacts(all, centre, reach, nearest, by_force);
             ASSERT_EQ(by_cells.size(), by_force.size());
             for (std::size_t k = 0; k < by_cells.size(); ++k) {
                 EXPECT_EQ(by_cells[k].distance, by_force[k].distance);

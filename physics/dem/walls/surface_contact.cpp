@@ -7,12 +7,15 @@ namespace talus::dem {
 
 namespace {
 
-constexpr std::uint32_t contacts_of_one_part = 8;
 constexpr double same_direction = 1e-12;
 
 }  // namespace
 
 void unite_smooth_contacts(std::vector<SurfaceContact>& contacts, std::size_t begin) {
+    if (contacts.size() == begin + 1) {
+        contacts.back().place *= contacts_of_one_part;
+        return;
+    }
     const auto first = contacts.begin() + static_cast<std::ptrdiff_t>(begin);
     std::stable_sort(first, contacts.end(), [](const SurfaceContact& a, const SurfaceContact& b) {
         return a.place != b.place ? a.place < b.place : a.distance < b.distance;

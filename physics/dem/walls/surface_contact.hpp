@@ -18,6 +18,9 @@ struct SurfaceContact {
 /// Greatest angle of two contacts' normals on one smooth part of a surface that count as one [rad].
 inline constexpr double one_contact_angle = 0.7853981633974483;
 
+/// Places that each smooth part may have at a time.
+inline constexpr std::uint32_t contacts_of_one_part = 8;
+
 /// Makes one of the contacts of each smooth part whose normals are close: a facetted hollow would be touched
 /// twice where the curved one it stands for is touched once. `contacts` from `begin` on come with the number
 /// of their part as place. Normal and distance become means; the weight of another facet falls from 1, where

@@ -225,9 +225,7 @@ TriangleSurface::Nearest TriangleSurface::nearest_on(std::uint32_t triangle, con
     const Vector3<> ab = mesh_.vertices[corners[1]] - mesh_.vertices[corners[0]],
                     ac = mesh_.vertices[corners[2]] - mesh_.vertices[corners[0]];
     const auto at = [&](Feature feature, std::uint32_t index, const Vector3<>& arm) {
-        const double distance = norm(arm);
-        const Vector3<> normal = distance > 0 ? (1 / distance) * arm : normals_[triangle];
-        return Nearest{triangle, index, feature, distance, normal};
+        return Nearest{triangle, index, feature, norm(arm), arm};
     };
     const auto vertex = [&](std::size_t k) { return at(Feature::vertex, corners[k], to[k]); };
     // From the end of lower index, so that both triangles of an edge find the same point.
@@ -251,8 +249,7 @@ TriangleSurface::Nearest TriangleSurface::nearest_on(std::uint32_t triangle, con
     const double va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return edge(1);
     const double height = dot(to[0], normals_[triangle]);
-    const Vector3<> normal = height < 0 ? -normals_[triangle] : normals_[triangle];
-    return {triangle, triangle, Feature::face, std::abs(height), normal};
+    return {triangle, triangle, Feature::face, std::abs(height), height * normals_[triangle]};
 }
 
 bool TriangleSurface::is_contact(const Nearest& candidate, std::span<const Nearest> all) const {
@@ -278,17 +275,25 @@ bool TriangleSurface::is_contact(const Nearest& candidate, std::span<const Neare
 }
 
 void TriangleSurface::find_contacts(std::span<const std::uint32_t> triangles, const Vector3<>& centre,
-                                    double reach, std::vector<SurfaceContact>& contacts) const {
-    std::vector<Nearest> candidates;
+                                    double reach, std::vector<Nearest>& nearest,
+                                    std::vector<SurfaceContact>& contacts) const {
+    nearest.clear();
     for (const std::uint32_t t : triangles) {
         if (!(std::abs(dot(centre - mesh_.vertices[mesh_.triangles[t][0]], normals_[t])) < reach)) continue;
-        const Nearest nearest = nearest_on(t, centre);
-        if (nearest.distance < reach) candidates.push_back(nearest);
+        const Nearest candidate = nearest_on(t, centre);
+        if (candidate.distance < reach) nearest.push_back(candidate);
     }
     const std::size_t begin = contacts.size();
-    for (const Nearest& candidate : candidates)
-        if (is_contact(candidate, candidates))
-            contacts.push_back({candidate.normal, candidate.distance, part_[candidate.triangle]});
+    for (const Nearest& candidate : nearest) {
+        if (!is_contact(candidate, nearest)) continue;
+        const Vector3<>& face = normals_[candidate.triangle];
+        Vector3<> normal = face;  // what a centre on the sheet is given, and one above a face, exactly
+        if (candidate.feature == Feature::face)
+            normal = dot(candidate.arm, face) < 0 ? -face : face;
+        else if (candidate.distance > 0)
+            normal = (1 / candidate.distance) * candidate.arm;
+        contacts.push_back({normal, candidate.distance, part_[candidate.triangle]});
+    }
     unite_smooth_contacts(contacts, begin);
 }
 

@@ -40,10 +40,20 @@ class TriangleSurface {
     /// Triangles that may be nearer than `reach` to `centre`, in order: all that are, and some more.
     void near(const Vector3<>& centre, double reach, std::vector<std::uint32_t>& found) const;
 
+    enum class Feature : std::uint8_t { face, edge, vertex };
+    /// Where a triangle is nearest to a centre.
+    struct Nearest {
+        std::uint32_t triangle, feature_index;
+        Feature feature;
+        double distance;  ///< [m]
+        Vector3<> arm;    ///< from there to the centre [m]
+    };
+
     /// Appends the contacts nearer than `reach` to `centre` among `triangles`, which near() found for this
     /// centre, or for another with a reach greater by more than their distance.
+    /// `nearest` is room to work in.
     void find_contacts(std::span<const std::uint32_t> triangles, const Vector3<>& centre, double reach,
-                       std::vector<SurfaceContact>& contacts) const;
+                       std::vector<Nearest>& nearest, std::vector<SurfaceContact>& contacts) const;
 
     const TriangleMesh& mesh() const { return mesh_; }
     const Vector3<>& lower() const { return lower_; }
@@ -52,14 +62,6 @@ class TriangleSurface {
     std::uint32_t part_count() const { return part_count_; }
 
   private:
-    enum class Feature : std::uint8_t { face, edge, vertex };
-    /// Where a triangle is nearest to a centre.
-    struct Nearest {
-        std::uint32_t triangle, feature_index;
-        Feature feature;
-        double distance;
-        Vector3<> normal;
-    };
     Nearest nearest_on(std::uint32_t triangle, const Vector3<>& centre) const;
     bool is_contact(const Nearest& candidate, std::span<const Nearest> all) const;
     void find_edges();

@@ -7,30 +7,29 @@ namespace talus::dem {
 
 namespace {
 
-template <class... Parts>
-struct Overloaded : Parts... {
-    using Parts::operator()...;
-};
-
-void touch(const WallShape& shape, const Vector3<>& centre, double reach,
-           std::vector<SurfaceContact>& contacts) {
-    std::visit(Overloaded{[&](const std::shared_ptr<const TriangleSurface>& surface) {
-                              std::vector<std::uint32_t> triangles;
-                              surface->near(centre, reach, triangles);
-                              surface->find_contacts(triangles, centre, reach, contacts);
-                          },
-                          [&](const auto& simple) { simple.find_contacts(centre, reach, contacts); }},
-               shape);
+/// Finds the contacts in the wall's own frame.
+void touch(const WallShape& shape, const Vector3<>& centre, double reach, WallSearch& search) {
+    search.contacts.clear();
+    if (const auto* surface = std::get_if<std::shared_ptr<const TriangleSurface>>(&shape)) {
+        (*surface)->near(centre, reach, search.triangles);
+        if (!search.triangles.empty())
+            (*surface)->find_contacts(search.triangles, centre, reach, search.nearest, search.contacts);
+        return;
+    }
+    const auto find = [&](const auto& simple) {
+        if constexpr (requires { simple.find_contacts(centre, reach, search.contacts); })
+            simple.find_contacts(centre, reach, search.contacts);
+    };
+    std::visit(find, shape);
 }
 
 }  // namespace
 
 void find_wall_contacts(const Wall& wall, const WallPose& pose, const Vector3<>& centre, double radius,
-                        double reach, std::vector<WallContact>& found) {
+                        double reach, WallSearch& search, std::vector<WallContact>& found) {
     found.clear();
-    std::vector<SurfaceContact> contacts;
-    touch(wall.shape, pose.in_wall(centre), radius + reach, contacts);
-    for (const SurfaceContact& c : contacts) {
+    touch(wall.shape, pose.in_wall(centre), radius + reach, search);
+    for (const SurfaceContact& c : search.contacts) {
         const Vector3<> normal = pose.turned(c.normal);
         const double overlap = radius - c.distance;
         const Vector3<> point = centre - contact_arm(radius, overlap) * normal;
@@ -45,9 +44,9 @@ bool may_touch(const Wall& wall, const WallPose& pose, const Vector3<>& centre, 
         (*surface)->near(at_rest, radius + reach, triangles);
         return !triangles.empty();
     }
-    std::vector<SurfaceContact> contacts;
-    touch(wall.shape, at_rest, radius + reach, contacts);
-    return !contacts.empty();
+    WallSearch search;
+    touch(wall.shape, at_rest, radius + reach, search);
+    return !search.contacts.empty();
 }
 
 double greatest_displacement(const WallPose& from, const WallPose& to, const Vector3<>& centre,

@@ -32,9 +32,23 @@ struct WallContact {
     std::uint32_t place;      ///< names the contact on this wall (surface_contact.hpp)
 };
 
+/// Room to search in, kept from one search to the next.
+struct WallSearch {
+    std::vector<std::uint32_t> triangles;
+    std::vector<TriangleSurface::Nearest> nearest;
+    std::vector<SurfaceContact> contacts;
+};
+
 /// All contacts of a sphere with a wall, and gaps of up to `reach` [m]; replaces what `found` held.
 void find_wall_contacts(const Wall& wall, const WallPose& pose, const Vector3<>& centre, double radius,
-                        double reach, std::vector<WallContact>& found);
+                        double reach, WallSearch& search, std::vector<WallContact>& found);
+
+/// The same with room of its own.
+inline void find_wall_contacts(const Wall& wall, const WallPose& pose, const Vector3<>& centre, double radius,
+                               double reach, std::vector<WallContact>& found) {
+    WallSearch search;
+    find_wall_contacts(wall, pose, centre, radius, reach, search, found);
+}
 
 /// True if a sphere may come within `reach` of the wall where it is: never false if it does.
 bool may_touch(const Wall& wall, const WallPose& pose, const Vector3<>& centre, double radius, double reach);
