@@ -92,10 +92,12 @@ class Partners {
 
   private:
     static constexpr double nowhere = std::numeric_limits<double>::infinity();
-    static std::size_t padded(std::size_t count) { return (count + 15) / 16 * 16; }
+    static std::size_t padded(std::size_t count) {
+        return (count + lane_count - 1) / lane_count * lane_count;
+    }
 
     void reserve(std::size_t count) {
-        const std::size_t room = count + 32;
+        const std::size_t room = count + 2 * lane_count;
         if (candidates_.size() >= room) return;
         for (int d = 0; d < D; ++d) near_position_[d].reserve(room);
         near_h_.reserve(room);

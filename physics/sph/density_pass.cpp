@@ -45,7 +45,7 @@ class DensitySum {
         const std::span<const std::uint32_t> partners = partners_.index();
         LaneSum total;
         for (std::size_t k = 0; k < partners.size(); k += lane_count) {
-            const auto other = records_.gather(i, partners.data() + k);
+            const auto other = records_.gather(partners.data() + k);
             Vector<Lanes, D> r;
             for (std::size_t d = 0; d < D; ++d) r[d] = own[d] - other[d];
             const Lanes value = kernel_.value(dot(r, r), Lanes(inverse_h));

@@ -6,7 +6,7 @@
 
 namespace talus::sph {
 
-template <int D, class Options, Precision precision = Precision::full, class Sum = LaneSum>
+template <int D, class Options>
 class GodunovPass {
   public:
     GodunovPass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings)
@@ -41,7 +41,7 @@ class GodunovPass {
     std::uint64_t visit(const CellEntry& cell, std::span<const Run> runs) {
         std::uint64_t pairs = 0;
         partners_.enter(cell, runs);
-        records_.enter(runs, finish(), cell.begin);
+        records_.enter(runs, finish());
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
             if constexpr (Options::variable_h)
                 partners_.find_mutual(i, settings_.force_support());
@@ -55,9 +55,7 @@ class GodunovPass {
 
   private:
     using Places = GodunovPlaces<D, Options>;
-    using Records = PairRecords<Places::count, precision, D>;
-    using Real = typename Records::Real;
-    using Particle = GodunovParticle<Real, D, Options>;
+    using Particle = GodunovParticle<Lanes, D, Options>;
 
     /// Sets what is not copied from a field.
     auto finish() const {
@@ -75,15 +73,16 @@ class GodunovPass {
     }
 
     [[gnu::flatten]] void evaluate(std::uint32_t i) {
-        const Particle own{records_.own(i)};
-        const Real h = smoothing_length_[i];
+        const Particle own{broadcast(records_[i])};
+        const Lanes h = smoothing_length_[i];
         const std::span<const std::uint32_t> partners = partners_.index();
-        std::array<Sum, D> force{};
-        Sum power;
-        for (std::size_t k = 0; k < partners.size(); k += Real::size()) {
-            const Particle other{records_.gather(i, partners.data() + k)};
+        std::array<LaneSum, D> force{};
+        LaneSum power;
+        for (std::size_t k = 0; k < partners.size(); k += lane_count) {
+            const Particle other{records_.gather(partners.data() + k)};
             const auto term = godunov_pair<D, Options>(own, other, h, kernel_, settings_);
-            const Real mass = select(first<Real>(partners.size() - k), other.scalar(Places::mass), Real(0.0));
+            const Lanes mass =
+                select(first_lanes(partners.size() - k), other.scalar(Places::mass), Lanes(0.0));
             for (std::size_t d = 0; d < D; ++d) force[d].add(k, mass * term.force[d]);
             power.add(k, mass * term.power);
         }
@@ -99,7 +98,7 @@ class GodunovPass {
     Partners<D> partners_;
     std::array<const double*, D * D> velocity_gradient_;
     const std::uint8_t* body_;  ///< null: all the same
-    Records records_;
+    PairRecords<Places::count> records_;
 };
 
 /// Runs the pass with the options that fit the fields of the set and the settings.

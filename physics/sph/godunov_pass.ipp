@@ -1,6 +1,4 @@
 #pragma once
-#include <cstdlib>
-#include <string_view>
 #include "physics/sph/godunov_pass.hpp"
 
 namespace talus::sph {
@@ -8,22 +6,12 @@ namespace talus::sph {
 template <int D, class Options>
 void run_with(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
               PassCount& count) {
-    const auto go = [&](auto pass) {
+    GodunovPass<D, Options> pass(particles, table, which, settings);
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
         const std::uint64_t pairs = pass.visit(cell, runs);
         count.pairs += pairs;
         count.work_of_cell[k] = static_cast<double>(pairs);
     });
-    };
-    if constexpr (D == 3 && !Options::quintic) {
-        const std::string_view trial = settings.trial;
-        if (trial == "single") return go(GodunovPass<D, Options, Precision::difference, SingleSum>(particles, table, which, settings));
-        if constexpr (Options::strength && !Options::variable_h) {
-        if (trial == "wide") return go(GodunovPass<D, Options, Precision::difference, WideSum>(particles, table, which, settings));
-        if (trial == "cell") return go(GodunovPass<D, Options, Precision::cell, SingleSum>(particles, table, which, settings));
-        }
-    }
-    go(GodunovPass<D, Options>(particles, table, which, settings));
 }
 
 template <int D>

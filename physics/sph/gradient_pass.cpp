@@ -1,5 +1,3 @@
-#include <string_view>
-
 #include "physics/sph/pair_records.hpp"
 #include "physics/sph/pass_support.hpp"
 #include "physics/sph/passes.hpp"
@@ -20,14 +18,14 @@ struct GradientSums {
     Symmetric<Sum, D> moment{};                      ///< sum V_j (x_j - x_i) grad W
 };
 
-template <class Sum, std::size_t count>
-std::array<double, count> totals(const std::array<Sum, count>& sums) {
+template <std::size_t count>
+std::array<double, count> totals(const std::array<LaneSum, count>& sums) {
     std::array<double, count> values;
     for (std::size_t c = 0; c < count; ++c) values[c] = sums[c].total();
     return values;
 }
 
-template <int D, class Kernel, bool with_pressure, Precision precision = Precision::full, class Sum = LaneSum>
+template <int D, class Kernel, bool with_pressure>
 class GradientPass {
   public:
     GradientPass(ParticleSet& particles, const CellTable& table, Cells which, const Kernel& kernel)
@@ -51,7 +49,7 @@ class GradientPass {
 
     void visit(const CellEntry& cell, std::span<const Run> runs) {
         partners_.enter(cell, runs);
-        records_.enter(runs, finish(), cell.begin);
+        records_.enter(runs, finish());
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
             partners_.find(i, kernel_.support());
             store(i, sum_over_partners(i));
@@ -63,28 +61,25 @@ class GradientPass {
                                  place_density = place_mass + 1, place_pressure = place_mass + 2,
                                  record_size = place_pressure + (with_pressure ? 1 : 0);
 
-    using Records = PairRecords<record_size, precision, D>;
-    using Real = typename Records::Real;
-
     /// Sets what is not copied from a field.
     auto finish() const {
         return [](const Neighbours&, auto&) {};
     }
 
     [[gnu::flatten]] GradientSums<double, D> sum_over_partners(std::uint32_t i) const {
-        const auto own = records_.own(i);
-        const Real inverse_h = 1 / smoothing_length_[i];
+        const auto own = broadcast(records_[i]);
+        const Lanes inverse_h = 1 / smoothing_length_[i];
         const std::span<const std::uint32_t> partners = partners_.index();
-        GradientSums<Sum, D> sums;
-        for (std::size_t k = 0; k < partners.size(); k += Real::size()) {
-            const auto other = records_.gather(i, partners.data() + k);
-            Vector<Real, D> r;  // x_i - x_j
+        GradientSums<LaneSum, D> sums;
+        for (std::size_t k = 0; k < partners.size(); k += lane_count) {
+            const auto other = records_.gather(partners.data() + k);
+            Vector<Lanes, D> r;  // x_i - x_j
             for (std::size_t d = 0; d < D; ++d) r[d] = own[place_position + d] - other[place_position + d];
-            const Real factor =
-                select(first<Real>(partners.size() - k), kernel_.factor(dot(r, r), inverse_h), Real(0.0));
-            const Real mean_density = 0.5 * (own[place_density] + other[place_density]);
-            const Real volume_factor = other[place_mass] * factor / mean_density;
-            Vector<Real, D> volume_gradient;
+            const Lanes factor =
+                select(first_lanes(partners.size() - k), kernel_.factor(dot(r, r), inverse_h), Lanes(0.0));
+            const Lanes mean_density = 0.5 * (own[place_density] + other[place_density]);
+            const Lanes volume_factor = other[place_mass] * factor / mean_density;
+            Vector<Lanes, D> volume_gradient;
             for (std::size_t b = 0; b < D; ++b) volume_gradient[b] = volume_factor * r[b];
             for (std::size_t b = 0; b < D; ++b) {
                 if constexpr (with_pressure) {
@@ -130,12 +125,12 @@ class GradientPass {
     std::array<double*, D * D> velocity_gradient_;
     std::array<double*, D> pressure_gradient_{}, volume_gradient_{};
     Partners<D> partners_;
-    Records records_;
+    PairRecords<record_size> records_;
 };
 
-template <int D, class Kernel, bool with_pressure, Precision precision = Precision::full, class Sum = LaneSum>
+template <int D, class Kernel, bool with_pressure>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Kernel& kernel) {
-    GradientPass<D, Kernel, with_pressure, precision, Sum> pass(particles, table, which, kernel);
+    GradientPass<D, Kernel, with_pressure> pass(particles, table, which, kernel);
     table.for_each_own(which, [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
         pass.visit(cell, runs);
     });
@@ -146,20 +141,6 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Kern
 void gradient_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
     with_dimension(particles, [&](auto dimension) {
         constexpr int D = dimension;
-        if constexpr (D == 3)
-            if (particles.has(field::pressure_gradient)) {
-                const std::string_view trial = settings.trial;
-                const Gaussian<D> kernel(settings.cutoff);
-                if (trial == "single")
-                    return run<D, Gaussian<D>, true, Precision::difference, SingleSum>(particles, table,
-                                                                                       which, kernel);
-                if (trial == "wide")
-                    return run<D, Gaussian<D>, true, Precision::difference, WideSum>(particles, table, which,
-                                                                                     kernel);
-                if (trial == "cell")
-                    return run<D, Gaussian<D>, true, Precision::cell, SingleSum>(particles, table, which,
-                                                                                 kernel);
-            }
         if (particles.has(field::pressure_gradient))  // Godunov SPH, always with the Gaussian
             run<D, Gaussian<D>, true>(particles, table, which, Gaussian<D>(settings.cutoff));
         else

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <cstdlib>
 
 namespace talus::sph {
 
@@ -39,8 +38,6 @@ struct Settings {
     double viscosity_beta = 2;
 
     double courant = 0.5;  ///< C in dt = C h / (c + h |div v|)
-
-    const char* trial = std::getenv("TALUS_TRIAL") ? std::getenv("TALUS_TRIAL") : "";
 
     bool uses(Interpolation kind) const {
         return formulation == Formulation::godunov && (compressed == kind || stretched == kind);

@@ -81,7 +81,7 @@ class StandardPass {
         LaneSum power;
         Lanes viscous_speed = 0;
         for (std::size_t k = 0; k < partners.size(); k += lane_count) {
-            const Values other = records_.gather(i, partners.data() + k);
+            const Values other = records_.gather(partners.data() + k);
             Vector<Lanes, D> r, v_difference;
             for (std::size_t d = 0; d < D; ++d) {
                 r[d] = own[place_position + d] - other[place_position + d];
