@@ -15,9 +15,9 @@ struct LatePhase {
     double stiffness;  ///< pressure and shear modulus, in those of the material [1]
 };
 
-/// The material with its pressure at every density and energy, and its shear modulus, times `stiffness`: warm rock
-/// is free of pressure at the density where it was. Strength and the growth of cracks at a given stress stay as they
-/// are. Throws std::invalid_argument for an ideal gas, whose stiffness is its pressure.
+/// The material with its pressure at every density and energy, and its shear modulus, times `stiffness`: warm
+/// rock is free of pressure at the density where it was. Strength and the growth of cracks at a given stress
+/// stay as they are. Throws std::invalid_argument for an ideal gas, whose stiffness is its pressure.
 Material softened(const Material& material, double stiffness);
 
 /// Moves the density of every particle with body == which to where the softened equation of state gives the

@@ -11,9 +11,10 @@ namespace talus {
 
 namespace {
 
-/// Radii over the least up to which grains find each other on one grid; those that are larger, few, are
-/// compared with all.
+/// Grains up to some radius find each other on one grid; those that are larger, at most so many, are compared
+/// with all. The radius is the least one by as many steps of `alike` as that takes.
 constexpr double alike = 3;
+constexpr std::uint64_t most_large = 1000;
 
 struct Sphere {
     std::uint64_t id;
@@ -43,7 +44,7 @@ void look_at_small(const Communicator& comm, ParticleSet small, double largest, 
     Box open;
     open.dimension = 3;
     const CellGrid grid(open, 2 * largest, 1);
-    Decomposition decomposition(comm, PartitionMethod::metis);
+    Decomposition decomposition(comm, PartitionMethod::cheapest);
     decomposition.expect(small);
     decomposition.divide(small, grid);
     decomposition.arrange(small, grid);
@@ -68,8 +69,13 @@ void look_at_small(const Communicator& comm, ParticleSet small, double largest, 
 Overlaps overlaps_of(const Communicator& comm, const ParticleSet& grains) {
     const auto radius = grains.own(field::radius);
     const auto least = std::min_element(radius.begin(), radius.end());
-    const double small_up_to =
+    double small_up_to =
         alike * comm.all_min(least == radius.end() ? std::numeric_limits<double>::infinity() : *least);
+    const auto larger = [&] {
+        return static_cast<std::uint64_t>(
+            std::count_if(radius.begin(), radius.end(), [&](double r) { return r > small_up_to; }));
+    };
+    while (comm.all_sum(larger()) > most_large) small_up_to *= alike;
     std::vector<std::uint32_t> small;
     std::vector<Sphere> large;
     for (std::uint32_t i = 0; i < grains.size(); ++i) {

@@ -30,8 +30,10 @@ int run_scene(const Communicator& comm, const RunOptions& options) {
     if (options.restart.empty())
         evolution->create([&] {
             if (const std::string why = stop.reason(0, 0); !why.empty())
-                throw AgreedError(exit_stopped_early,
-                                  fmt::format("stopped early: {}; the next run settles from the start", why));
+                throw AgreedError(
+                    1, fmt::format("stopped early: {}; no checkpoint holds a body that settles, the "
+                                   "next run begins with it again",
+                                   why));
         });
     else
         restart = evolution->read(options.restart, folder);

@@ -19,8 +19,9 @@ namespace talus {
 
 namespace {
 
-constexpr double default_imbalance = 0.1;  // its square is the share of the energy of the ringing
-constexpr double default_longest = 100;    // times that of sound through the body
+constexpr double default_imbalance = 0.1;       // its square is the share of the energy of the ringing
+constexpr double default_longest = 100;         // times that of sound through the body
+constexpr std::uint64_t least_particles = 100;  // fewer are all surface, which creeps, and never quiet
 
 /// Time that sound needs to pass through a body where it is longest [s].
 double sound_passage(const Body& body, const Material& material, int dimension) {
@@ -130,7 +131,8 @@ Settling come_to_rest(const SettlePlan& plan, double longest, Settling now, Simu
                 1,
                 fmt::format("not quiet after settle.longest = {:.4g} s ({} steps): the acceleration is "
                             "{:.3g} of gravity's (allowed: {:.3g}), the largest speed {:.3g} m/s{}; quiet "
-                            "must last {:.4g} s",
+                            "must last {:.4g} s; a larger settle.imbalance or settle.longest, or "
+                            "settle.bodies without it",
                             longest, now.steps, now.imbalance, plan.imbalance, now.largest_speed,
                             plan.largest_speed ? fmt::format(" (allowed: {:.3g})", *plan.largest_speed) : "",
                             now.quiet_for));
@@ -175,7 +177,7 @@ void set_going(const Body& body, const Point& shift, const Point& centre_of_mass
 }  // namespace
 
 std::optional<SettlePlan> read_settle(const Section& root, const std::vector<Body>& bodies,
-                                      const Setup& simulation) {
+                                      const std::vector<BodyCensus>& census, const Setup& simulation) {
     const Section table = root.section("settle");
     if (!table.exists()) return {};
     constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
@@ -185,10 +187,16 @@ std::optional<SettlePlan> read_settle(const Section& root, const std::vector<Bod
     if (table.has("largest_speed")) plan.largest_speed = table.number("largest_speed", "m/s", {}, positive);
     if (table.has("damping")) plan.damping = table.number("damping", "s", {}, positive);
     if (table.has("longest")) plan.longest = table.number("longest", "s", {}, positive);
-    std::vector<std::string> all;
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-        if (!simulation.held[b]) all.push_back(bodies[b].name);
-    const std::vector<std::string> names = table.texts("bodies", 0, all);
+    std::vector<std::string> all, large;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (simulation.held[b]) continue;
+        all.push_back(bodies[b].name);
+        if (census[b].count >= least_particles) large.push_back(bodies[b].name);
+    }
+    const std::vector<std::string> names = table.texts("bodies", 0, large);
+    if (names.empty())
+        table.error("bodies",
+                    fmt::format("no body settles: none that moves has {} particles", least_particles));
     for (const std::string& name : names)
         if (std::find(all.begin(), all.end(), name) == all.end())
             table.error("bodies",

@@ -22,9 +22,9 @@ struct SettlePlan {
     std::vector<bool> bodies;             ///< which, one a body
 };
 
-/// Reads [settle], if there is one. Faults are recorded in the scene.
+/// Reads [settle], if there is one; `census`: of the bodies. Faults are recorded in the scene.
 std::optional<SettlePlan> read_settle(const Section& root, const std::vector<Body>& bodies,
-                                      const Setup& simulation);
+                                      const std::vector<BodyCensus>& census, const Setup& simulation);
 
 /// How the settling of one body went.
 struct Settling {

@@ -51,8 +51,8 @@ TEST(LatePhase, KeepsThePressure) {
     EXPECT_NEAR(density[5], 2700, 1e-9);
 }
 
-/// Rock warmed by friction is wider than cold rock where it is free of pressure, by as much when it is softer: else it
-/// would swell at the change.
+/// Rock warmed by friction is wider than cold rock where it is free of pressure, by as much when it is
+/// softer: else it would swell at the change.
 TEST(LatePhase, ExpandsWarmRockNoMore) {
     const Material stiff = rock(), soft = softened(stiff, 0.01);
     const double warm = 2e4;
