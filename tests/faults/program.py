@@ -147,6 +147,25 @@ class BadInput(Case):
                               r"this one has 1 body")
         self.assertEqual(self.hash(self.out), before)
 
+    def test_a_checkpoint_of_the_late_phase_goes_on_with_its_stiffness_alone(self):
+        soft = ["run", RUNS / "asteroid_collision", "--quick", "--set", "late_phase.from=1 s"]
+
+        def run(out, steps, *options):
+            done = talus(*soft, "--steps", steps, "--out", out, *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        run(self.out, 1)  # the first step is 1.3 s: begun before the change, ended after it
+        before = self.hash(self.out)
+        for other, found in (("late_phase.stiffness=0.1", "0.1"), ("late_phase.stiffness=0.02", "0.02")):
+            done = talus(*soft, "--restart", "latest", "--out", self.out, "--set", other)
+            self.assert_fails(done, 3, rf"late_phase\.stiffness = 0\.01, this one has {re.escape(found)}")
+        self.assertEqual(self.hash(self.out), before)
+        run(self.out, 6, "--restart", "latest")
+        straight = self.folder / "straight"
+        run(straight, 6)
+        self.assertEqual(self.hash(self.out), self.hash(straight))
+        done = talus("check", RUNS / "sod_tube", "--quick", "--set", "late_phase.from=1")
+        self.assert_fails(done, 2, r"late_phase \(needs sph\.density", "is an ideal gas")
+
 
 class Check(Case):
     def test_memory_is_told_by_field_and_model_and_adds_up(self):
