@@ -177,7 +177,7 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
     phases_.enter(Phase::decompose);
     apply_boundaries(grains_, setup_.box);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
-    if (interval > 0 && step_ >= last_balance_ + interval && pairs_.size() > 0) {
+    if (interval > 0 && step_ >= last_balance_ + interval) {
         last_balance_ = step_;
         std::vector<double> work;
         for (const CellEntry& cell : decomposition_.own_cells()) work.push_back(cell.end - cell.begin);
