@@ -12,33 +12,22 @@ struct Parcel {
     std::vector<std::byte> bytes;
 };
 
-/// Exchange in which receivers do not know who will send. Up to a few ranks tell each other how many bytes
-/// will come; above, a rank posts one message to each destination and learns of the end by a non-blocking
-/// barrier, so that the number of messages does not grow with the number of ranks. T. Hoefler, C. Siebert, A.
-/// Lumsdaine, PPoPP 2010 ("NBX").
+/// Exchange in which receivers do not know who will send: a rank posts one message to each destination and
+/// learns of the end by a non-blocking barrier, so the number of messages does not grow with the number of
+/// ranks. T. Hoefler, C. Siebert, A. Lumsdaine, PPoPP 2010 ("NBX").
 class SparseExchange {
   public:
-    /// Parcels above `largest_message` bytes travel in pieces, for MPI counts are ints. `few`: most ranks
-    /// that tell each other.
-    explicit SparseExchange(const Communicator& comm, std::size_t largest_message = std::size_t{1} << 30,
-                            int few = 32)
-        : comm_(comm), largest_message_(largest_message), few_(few) {}
+    /// Parcels above `largest_message` bytes travel in pieces, for MPI counts are ints.
+    explicit SparseExchange(const Communicator& comm, std::size_t largest_message = std::size_t{1} << 30)
+        : comm_(comm), largest_message_(largest_message) {}
 
     /// Collective. At most one parcel a rank; those to the own rank are handed back without MPI. The result
     /// is sorted by rank.
     std::vector<Parcel> operator()(std::vector<Parcel> outgoing);
 
   private:
-    using Send = decltype(&MPI_Isend);
-    std::vector<MPI_Request> send(const std::vector<Parcel>& outgoing, int tag, Send how) const;
-    void exchange_announced(const std::vector<Parcel>& outgoing, int tag,
-                            std::vector<Parcel>& incoming) const;
-    void exchange_unannounced(const std::vector<Parcel>& outgoing, int tag,
-                              std::vector<Parcel>& incoming) const;
-
     const Communicator& comm_;
     std::size_t largest_message_;
-    int few_;
 };
 
 }  // namespace talus

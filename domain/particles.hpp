@@ -80,4 +80,12 @@ class ParticleSet {
     std::vector<std::byte> reorder_buffer_;
 };
 
+/// Id of the first own particle with a rate or a state that is not finite, and the field's name; nullptr if
+/// none.
+struct NotFinite {
+    std::uint64_t id;
+    const FieldInfo* field;
+};
+NotFinite find_not_finite(const ParticleSet& particles);
+
 }  // namespace talus

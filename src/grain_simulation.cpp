@@ -126,6 +126,7 @@ void GrainSimulation::finish(double kick_step) {
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
+    if (!std::isfinite(moved2)) refuse_not_finite();
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
     std::array<int, 2> flags{walls_moved || moved2 > allowed * allowed, !fault_.empty()};
@@ -133,6 +134,13 @@ void GrainSimulation::finish(double kick_step) {
     comm_.all_max(std::span<int>(flags));
     outdated_ = flags[0] > 0;
     if (flags[1] > 0) comm_.all_agree(1, fault_);
+}
+
+void GrainSimulation::refuse_not_finite() {
+    if (!fault_.empty()) return;
+    const NotFinite found = find_not_finite(grains_);
+    fault_ = fmt::format("step {}, time {} s: {} of grain {} is not finite", step_, time_,
+                         found.field ? found.field->name : "the motion", found.id);
 }
 
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {

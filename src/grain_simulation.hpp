@@ -62,7 +62,7 @@ class GrainSimulation {
     void resume(double time, std::uint64_t step, const ParticleSet& contacts);
 
     /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
-    /// all bounds, or a grain that was lost or left through a wall. Collective.
+    /// all bounds, or a grain that was lost, left through a wall or moves no finite way. Collective.
     void step();
 
     double time() const { return time_; }                  ///< [s]
@@ -98,6 +98,7 @@ class GrainSimulation {
     void finish(double kick_step);
     std::vector<dem::WallPose> poses_at(double time) const;
     bool walls_move() const;
+    void refuse_not_finite();
     void refuse_overload(const dem::Overload& overload, bool at_wall);
     double listed_gap() const { return reach_ + setup_.skin; }
 

@@ -303,7 +303,7 @@ void Simulation::conclude_step() {
         const sph::StepLimit by_gravity = gravity::stable_time_step(particles_, *setup_.gravity);
         if (by_gravity.time_step < limit_.time_step) limit_ = by_gravity;
     }
-    const sph::NotFinite found = sph::find_not_finite(particles_);
+    const NotFinite found = find_not_finite(particles_);
     phases_.enter(Phase::wait);
     std::array<double, 2> least = {found.field ? 0.0 : 1.0, limit_.time_step};
     comm_.all_min(std::span<double>(least));

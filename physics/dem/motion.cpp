@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "domain/grain_fields.hpp"
 
@@ -70,7 +71,7 @@ double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Re
                      dv = components(grains, field::acceleration),
                      w = components(grains, field::angular_velocity),
                      dw = components(grains, field::angular_acceleration);
-    double most2 = 0;
+    double most2 = 0, spoilt = 0;  // 0 unless a value is infinite or NaN
     for (std::size_t i = 0; i < grains.size(); ++i) {
         const double response = responses.acceleration[i], angular = responses.angular[i];
         double moved2 = 0;
@@ -84,10 +85,12 @@ double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Re
             dw[a][i] = turn;
             const double moved = x[a][i] + time_step * (velocity + half_step * now) - responses.start[a][i];
             moved2 += moved * moved;
+            spoilt += w[a][i] * 0.0;
         }
+        spoilt += moved2 * 0.0;
         most2 = std::max(most2, moved2);
     }
-    return most2;
+    return spoilt == 0 ? most2 : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace talus::dem

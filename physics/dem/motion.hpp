@@ -48,7 +48,7 @@ struct Responses {
 
 /// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`. Returns
 /// the square of the largest distance from `responses.start` that a grain will have after the next drift() of
-/// the same time step [m2].
+/// the same time step [m2]; infinite if any value is not finite.
 double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, double kick_step, double time_step);
 

@@ -167,25 +167,4 @@ StepLimit stable_time_step(const ParticleSet& particles, std::span<const double>
     return limit;
 }
 
-NotFinite find_not_finite(const ParticleSet& particles) {
-    NotFinite found{0, nullptr};
-    std::size_t first = particles.size();
-    for (const Column& column : particles.columns()) {
-        if (column.info->role != Role::state || column.info->type != ValueType::f64) continue;
-        for (const auto& component : column.components) {
-            const auto* values = reinterpret_cast<const double*>(component.data());
-            double sum = 0;  // 0 unless a value is infinite or NaN
-#pragma omp simd reduction(+ : sum)
-            for (std::size_t i = 0; i < particles.size(); ++i) sum += values[i] * 0.0;
-            if (sum == 0) continue;
-            for (std::size_t i = 0; i < first; ++i)
-                if (!std::isfinite(values[i])) {
-                    first = i;
-                    found = {particles.data(field::id)[i], column.info};
-                }
-        }
-    }
-    return found;
-}
-
 }  // namespace talus::sph

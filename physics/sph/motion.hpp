@@ -37,12 +37,4 @@ struct StepLimit {
 StepLimit stable_time_step(const ParticleSet& particles, std::span<const double> shear_moduli,
                            const Settings& settings);
 
-/// Id of the first own particle with a rate or a state that is not finite, and the field's name; nullptr if
-/// none.
-struct NotFinite {
-    std::uint64_t id;
-    const FieldInfo* field;
-};
-NotFinite find_not_finite(const ParticleSet& particles);
-
 }  // namespace talus::sph

@@ -25,11 +25,13 @@ GrainEvolution::GrainEvolution(const Communicator& comm, const Scene& scene, std
 
 std::vector<std::string> GrainEvolution::warnings() const {
     constexpr double worth_noting = 0.001;
-    if (!(first_overlap_ > worth_noting)) return {};
-    return {fmt::format(
-        "grains overlap at the start, by up to {:.3g} of the smaller radius: they will push each other "
-        "apart",
-        first_overlap_)};
+    std::vector<std::string> found = setup_.warnings;
+    if (first_overlap_ > worth_noting)
+        found.push_back(fmt::format(
+            "grains overlap at the start, by up to {:.3g} of the smaller radius: they will push each other "
+            "apart",
+            first_overlap_));
+    return found;
 }
 
 void GrainEvolution::create(const std::function<void()>&) {

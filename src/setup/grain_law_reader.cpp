@@ -15,7 +15,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Range positive{0, infinity, true};
 constexpr Range not_negative{0};
-constexpr Range fraction{0, 1};
 }  // namespace
 
 GrainLawReader::GrainLawReader(const Section& root) : root_(root), dem_(root.section("dem")) {
@@ -29,6 +28,10 @@ GrainLawReader::GrainLawReader(const Section& root) : root_(root), dem_(root.sec
     stiffness_ratio_ = dem_.number("stiffness_ratio", "1", 2.0 / 7, not_negative);
 }
 
+Range GrainLawReader::restitutions() const {
+    return {end_ == dem::EndOfContact::cut_at_zero ? dem::least_restitution_cut : 0, 1};
+}
+
 dem::GrainMaterial GrainLawReader::read_material(const Section& table, const std::string& name) const {
     dem::GrainMaterial material;
     material.name = name;
@@ -37,8 +40,7 @@ dem::GrainMaterial GrainLawReader::read_material(const Section& table, const std
         material.youngs_modulus = table.number("youngs_modulus", "Pa", {}, positive);
         material.poisson_ratio = table.number("poisson_ratio", "1", {}, {-1, 0.5, true});
     }
-    const double least = end_ == dem::EndOfContact::cut_at_zero ? dem::least_restitution_cut : 0;
-    material.restitution = table.number("restitution", "1", {}, {least, 1});
+    material.restitution = table.number("restitution", "1", {}, restitutions());
     material.friction = table.number("friction", "1", {}, not_negative);
     if (rolling_) {
         material.rolling_friction = table.number("rolling_friction", "1", {}, not_negative);
@@ -78,7 +80,7 @@ void GrainLawReader::read_pairs() {
             return table.has(key) ? std::optional<double>(table.number(key, "1", {}, range)) : std::nullopt;
         };
         dem::PairOverride stated;
-        stated.restitution = given("restitution", fraction);
+        stated.restitution = given("restitution", restitutions());
         stated.friction = given("friction", not_negative);
         if (rolling_) stated.rolling_friction = given("rolling_friction", not_negative);
         pairs_->state(pair[0], pair[1], stated);

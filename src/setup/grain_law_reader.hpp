@@ -35,6 +35,7 @@ class GrainLawReader {
     dem::AnyLawTable table() const;
 
   private:
+    Range restitutions() const;
     dem::GrainMaterial read_material(const Section& table, const std::string& name) const;
 
     Section root_, dem_;

@@ -24,8 +24,7 @@ constexpr Range positive{0, infinity, true};
 /// Rows "x,y,z,radius[,vx,vy,vz[,wx,wy,wz]]" in SI units; lines beginning with # are not read.
 std::vector<std::array<double, 10>> read_list(const Communicator& comm, const Scene& scene,
                                               const Section& table) {
-    const std::filesystem::path file =
-        std::filesystem::absolute(scene.file()).parent_path() / table.text("file");
+    const std::filesystem::path file = find_file(comm, scene, table.text("file"));
     const std::string text = read_shared_text(comm, file);
     std::vector<std::array<double, 10>> rows;
     std::size_t line = 0;
@@ -143,12 +142,13 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     GrainLawReader laws(root);
     std::vector<std::uint8_t> material, held;
     std::vector<GrainBody> bodies = read_bodies(comm, scene, box, laws, material, seed);
-    std::vector<dem::Wall> walls = read_walls(scene, box, laws);
     double greatest = 0;
     for (const GrainBody& body : bodies) {
         held.push_back(body.held ? 1 : 0);
         greatest = std::max(greatest, body.greatest_radius);
     }
+    std::vector<std::string> warnings;
+    std::vector<dem::Wall> walls = read_walls({comm, scene, box, greatest}, laws, warnings);
     const Section table = root.section("dem"), run = root.section("run");
     const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
     check_box(root.section("box"), box, 2 * greatest + skin);
@@ -178,6 +178,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
             .greatest_time_step = limit.greatest,
             .time_step_limit = limit.reason,
             .output = output,
+            .warnings = std::move(warnings),
             .seed = seed};
 }
 

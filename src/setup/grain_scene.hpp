@@ -35,6 +35,7 @@ struct GrainScene {
     double greatest_time_step = 0;  ///< that is stable [s]
     std::string time_step_limit;    ///< what limits it
     OutputPlan output;
+    std::vector<std::string> warnings;  ///< what is doubtful, but can be used
     std::uint64_t seed = 0;
 };
 

@@ -71,21 +71,6 @@ BodyShape read_ellipsoid(const Section& table, double density, const BodyContext
     return ellipsoid;
 }
 
-/// Path of a file that a scene names: from the scene's folder, else from the folder of the environment
-/// variable TALUS_DATA. Collective.
-std::string find_file(const BodyContext& context, const std::string& name) {
-    std::filesystem::path file = std::filesystem::absolute(context.scene.file()).parent_path() / name;
-    if (context.comm.is_root()) {
-        std::error_code unreadable;
-        const char* data = std::getenv("TALUS_DATA");
-        if (!std::filesystem::exists(file, unreadable) && data)
-            if (const auto other = std::filesystem::path(data) / name;
-                std::filesystem::exists(other, unreadable))
-                file = other;
-    }
-    return context.comm.all_broadcast(file.string());
-}
-
 /// How many metres one unit of a shape file is, given its volume in that unit.
 double read_scale(const Section& table, double density, double file_volume) {
     const bool by_mass = table.has("mass"), by_radius = table.has("mean_radius");
@@ -112,7 +97,7 @@ BodyShape read_mesh(const Section& table, double density, const BodyContext& con
     }
     const Rotation turn = read_orientation(table, 3);
     if (name.empty()) return harmless;
-    const std::string file = find_file(context, name);
+    const std::string file = find_file(context.comm, context.scene, name);
     try {
         Polyhedron surface = parse_obj(read_shared_text(context.comm, file));
         const VolumeIntegrals integrals = integrate(surface);
@@ -130,6 +115,19 @@ BodyShape read_mesh(const Section& table, double density, const BodyContext& con
 }
 
 }  // namespace
+
+std::string find_file(const Communicator& comm, const Scene& scene, const std::string& name) {
+    std::filesystem::path file = std::filesystem::absolute(scene.file()).parent_path() / name;
+    if (comm.is_root()) {
+        std::error_code unreadable;
+        const char* data = std::getenv("TALUS_DATA");
+        if (!std::filesystem::exists(file, unreadable) && data)
+            if (const auto other = std::filesystem::path(data) / name;
+                std::filesystem::exists(other, unreadable))
+                file = other;
+    }
+    return comm.all_broadcast(file.string());
+}
 
 Point read_point(const Section& table, std::string_view key, std::string_view unit, int dimension,
                  std::optional<std::vector<double>> default_value) {

@@ -29,6 +29,10 @@ Point read_point(const Section& table, std::string_view key, std::string_view un
 /// The same, zero if it is not given.
 Point origin_default(const Section& table, std::string_view key, std::string_view unit, int dimension);
 
+/// Path of a file that a scene names: from the scene's folder, else from the folder of the environment
+/// variable TALUS_DATA. Collective.
+std::string find_file(const Communicator& comm, const Scene& scene, const std::string& name);
+
 /// The region that a body's table names. `density`: what a mass is made of [kg/m3]. Faults are recorded in
 /// the scene. Collective.
 BodyShape read_shape(const Section& table, double density, const BodyContext& context);

@@ -2,13 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 
+#include "src/setup/material_reader.hpp"
 #include "src/setup/shape_reader.hpp"
+#include "src/setup/wall_mesh_reader.hpp"
 
 namespace talus {
 
 namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double usual_smooth_angle = 0.5;  // [rad]
 
 dem::Vector3<> vector_of(const Point& p) { return {p[0], p[1], p[2]}; }
 
@@ -52,12 +60,40 @@ dem::WallShape read_revolved(const Section& table) {
         good = radii[k] >= 0 && (k == 0 || radii[k] != radii[k - 1] || along[k] != along[k - 1]);
         profile.push_back({radii[k], along[k]});
     }
-    const double smooth = table.number("smooth_angle", "rad", 0.5, {0, 1.5});
+    const double smooth = table.number("smooth_angle", "rad", usual_smooth_angle, {0, 1.5});
     if (good) return dem::RevolvedShape(origin, axis, profile, smooth);
     table.error(
         "radii",
         "radii and heights must be as many, two at least, no radius below 0, no point twice in sequence");
     return dem::RevolvedShape(origin, axis, {{1, 0}, {1, 1}}, smooth);
+}
+
+/// A sheet of triangles from an STL or OBJ file; any sheet if that has a fault.
+dem::WallShape read_sheet(const Section& table, const WallContext& context, const std::string& wall,
+                          std::vector<std::string>& warnings) {
+    const std::string name = table.text("file");
+    const double scale = table.number("file_unit", "m", 1.0, {0, infinity, true});
+    const double smooth = table.number("smooth_angle", "rad", usual_smooth_angle, {0, 1.5});
+    const dem::TriangleMesh any{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    const double reach = context.largest_radius > 0 ? 1.3 * context.largest_radius : 1.0;
+    const auto surface = [&](dem::TriangleMesh mesh) {
+        return std::make_shared<const dem::TriangleSurface>(std::move(mesh), smooth, reach);
+    };
+    if (name.empty()) return surface(any);
+    const std::string file = find_file(context.comm, context.scene, name);
+    try {
+        WallMesh read = read_wall_mesh(file, read_shared_text(context.comm, file), scale);
+        for (const std::string& warning : read.warnings)
+            warnings.push_back(fmt::format("wall '{}': {} {}", wall, file, warning));
+        if (const std::string outside = outside_of(read.mesh, context.box); !outside.empty())
+            warnings.push_back(fmt::format("wall '{}': {} {}", wall, file, outside));
+        return surface(std::move(read.mesh));
+    } catch (const ShapeError& error) {
+        table.error("file", fmt::format("{}: {}", file, error.what()));
+    } catch (const SceneError& error) {
+        table.error("file", error.what());
+    }
+    return surface(any);
 }
 
 dem::WallMotion read_motion(const Section& table) {
@@ -78,12 +114,28 @@ dem::WallMotion read_motion(const Section& table) {
     return motion;
 }
 
+/// A wall that is not the same everywhere along a periodic axis would be met by grains inside the box and
+/// missed by their images.
+void refuse_in_periodic(const Section& table, const Box& box, const std::string& kind,
+                        const dem::WallMotion& motion) {
+    if (std::find(box.boundary.begin(), box.boundary.end(), Boundary::periodic) == box.boundary.end()) return;
+    if (kind != "plane")
+        table.error("kind",
+                    fmt::format("'{}' needs a box that is open along all axes (allowed here: plane)", kind));
+    else if (motion.angular_velocity != 0)
+        table.section("motion").error("angular_velocity",
+                                      "a wall that turns needs a box that is open along all axes");
+}
+
 }  // namespace
 
-std::vector<dem::Wall> read_walls(const Scene& scene, const Box& box, GrainLawReader& laws) {
+std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& laws,
+                                  std::vector<std::string>& warnings) {
     std::vector<dem::Wall> walls;
-    for (const Section& table : scene.root().sections("wall")) {
-        const std::string kind = table.choice("kind", {"plane", "container", "block", "revolved"}, "plane");
+    for (const Section& table : context.scene.root().sections("wall")) {
+        const std::string kind =
+            table.choice("kind", {"plane", "container", "block", "revolved", "mesh"}, "plane");
+        const std::string name = table.text("name", table.path());
         dem::WallShape shape;
         if (kind == "container")
             shape = read_corners<dem::ContainerShape>(table);
@@ -91,10 +143,13 @@ std::vector<dem::Wall> read_walls(const Scene& scene, const Box& box, GrainLawRe
             shape = read_corners<dem::BlockShape>(table);
         else if (kind == "revolved")
             shape = read_revolved(table);
+        else if (kind == "mesh")
+            shape = read_sheet(table, context, name, warnings);
         else
-            shape = read_plane(table, box);
-        walls.push_back({table.text("name", table.path()), laws.material(table), shape,
-                         read_motion(table.section("motion"))});
+            shape = read_plane(table, context.box);
+        const dem::WallMotion motion = read_motion(table.section("motion"));
+        refuse_in_periodic(table, context.box, kind, motion);
+        walls.push_back({name, laws.material(table), shape, motion});
     }
     return walls;
 }

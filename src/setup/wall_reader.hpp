@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "comm/communicator.hpp"
 #include "domain/box.hpp"
 #include "io/scene.hpp"
 #include "physics/dem/walls/wall.hpp"
@@ -8,7 +9,17 @@
 
 namespace talus {
 
-/// The tables [[wall]]. Faults are recorded in the scene.
-std::vector<dem::Wall> read_walls(const Scene& scene, const Box& box, GrainLawReader& laws);
+/// What walls are read with.
+struct WallContext {
+    const Communicator& comm;
+    const Scene& scene;
+    const Box& box;
+    double largest_radius;  ///< of the grains [m]
+};
+
+/// The tables [[wall]]. Faults are recorded in the scene; what is wrong with a mesh that can be used all the
+/// same is appended to `warnings`. Collective.
+std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& laws,
+                                  std::vector<std::string>& warnings);
 
 }  // namespace talus

@@ -46,26 +46,21 @@ void one_round(const Communicator& comm, SparseExchange& exchange, int round) {
     EXPECT_EQ(next, incoming.size()) << "round " << round;
 }
 
-constexpr std::size_t large = std::size_t{1} << 30;
-constexpr int announced = 1000, unannounced = 0;  // ways of the exchange, as the most ranks that announce
-
 TEST(SparseExchange, DeliversRandomPatternsRoundAfterRound) {
     const Communicator comm(MPI_COMM_WORLD);
-    for (const int few : {announced, unannounced}) {
-        SparseExchange exchange(comm, large, few);
-        for (int round = 0; round < 200; ++round) one_round(comm, exchange, round);
-    }
+    SparseExchange exchange(comm);
+    for (int round = 0; round < 200; ++round) one_round(comm, exchange, round);
 }
 
 TEST(SparseExchange, RoundsOfDifferentExchangesDoNotMix) {
     const Communicator comm(MPI_COMM_WORLD);
-    SparseExchange first(comm, large, announced), second(comm, large, unannounced);
+    SparseExchange first(comm), second(comm);
     for (int round = 0; round < 200; ++round) one_round(comm, round % 3 == 0 ? first : second, round);
 }
 
 TEST(SparseExchange, RanksThatAreLateGetOnlyTheirRound) {
     const Communicator comm(MPI_COMM_WORLD);
-    SparseExchange first(comm, large, unannounced), second(comm, large, unannounced);
+    SparseExchange first(comm), second(comm);
     for (int round = 0; round < 20; ++round) {
         if (round % comm.size() == comm.rank()) {
             const double until = MPI_Wtime() + 0.002;
@@ -78,32 +73,26 @@ TEST(SparseExchange, RanksThatAreLateGetOnlyTheirRound) {
 
 TEST(SparseExchange, NothingToSend) {
     const Communicator comm(MPI_COMM_WORLD);
-    for (const int few : {announced, unannounced}) {
-        SparseExchange exchange(comm, large, few);
-        for (int round = 0; round < 10; ++round) EXPECT_TRUE(exchange({}).empty());
-    }
+    SparseExchange exchange(comm);
+    for (int round = 0; round < 10; ++round) EXPECT_TRUE(exchange({}).empty());
 }
 
 TEST(SparseExchange, EmptyParcelArrives) {
     const Communicator comm(MPI_COMM_WORLD);
+    SparseExchange exchange(comm);
     const int to = (comm.rank() + 1) % comm.size(), from = (comm.rank() + comm.size() - 1) % comm.size();
-    for (const int few : {announced, unannounced}) {
-        SparseExchange exchange(comm, large, few);
-        std::vector<Parcel> outgoing;
-        outgoing.push_back({to, {}});
-        const auto incoming = exchange(std::move(outgoing));
-        ASSERT_EQ(incoming.size(), 1u);
-        EXPECT_EQ(incoming[0].rank, from);
-        EXPECT_TRUE(incoming[0].bytes.empty());
-    }
+    std::vector<Parcel> outgoing;
+    outgoing.push_back({to, {}});
+    const auto incoming = exchange(std::move(outgoing));
+    ASSERT_EQ(incoming.size(), 1u);
+    EXPECT_EQ(incoming[0].rank, from);
+    EXPECT_TRUE(incoming[0].bytes.empty());
 }
 
 TEST(SparseExchange, LargeParcelsTravelInPieces) {
     const Communicator comm(MPI_COMM_WORLD);
-    for (const int few : {announced, unannounced}) {
-        SparseExchange exchange(comm, 64, few);  // bytes
-        for (int round = 0; round < 50; ++round) one_round(comm, exchange, round);
-    }
+    SparseExchange exchange(comm, 64);  // bytes
+    for (int round = 0; round < 50; ++round) one_round(comm, exchange, round);
 }
 
 TEST(Communicator, GathersInOrderOfRank) {
