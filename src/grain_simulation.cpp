@@ -138,9 +138,18 @@ void GrainSimulation::finish(double kick_step) {
 
 void GrainSimulation::refuse_not_finite() {
     if (!fault_.empty()) return;
-    const NotFinite found = find_not_finite(grains_);
-    fault_ = fmt::format("step {}, time {} s: {} of grain {} is not finite", step_, time_,
-                         found.field ? found.field->name : "the motion", found.id);
+    fault_ = fmt::format("step {}, time {} s: ", step_, time_);
+    if (const NotFinite found = find_not_finite(grains_); found.field) {
+        fault_ += fmt::format("{} of grain {} is not finite", found.field->name, found.id);
+        return;
+    }
+    std::size_t fastest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto v = std::as_const(grains_).own(field::velocity, axis);
+        for (std::size_t i = 0; i < v.size(); ++i)
+            if (!std::isfinite(v[i] * v[i])) fastest = i;
+    }
+    fault_ += fmt::format("grain {} moves too fast to follow", grains_.data(field::id)[fastest]);
 }
 
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {

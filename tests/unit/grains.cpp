@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "comm/communicator.hpp"
 #include "tests/support/grain_scene.hpp"
 
 /// Grains under the whole step: law, memory, motion, walls. What laws alone do is tested beside them.
@@ -173,15 +175,16 @@ TEST(Grains, StepIsOfSecondOrder) {
     EXPECT_GT(std::log(coarse / fine) / std::log(4.0), 1.8) << coarse << " " << fine;
 }
 
+const dem::GrainMaterial soft_glass{.name = "glass",
+                                    .density = 2500,
+                                    .youngs_modulus = 1e7,
+                                    .poisson_ratio = 0.2,
+                                    .restitution = 0.7,
+                                    .friction = 0.5};
+
 // A box of grains thrown at each other: forces act on both sides alike.
 TEST(Grains, MomentumIsKept) {
     const Communicator comm(MPI_COMM_SELF);
-    dem::GrainMaterial material{.name = "glass",
-                                .density = 2500,
-                                .youngs_modulus = 1e7,
-                                .poisson_ratio = 0.2,
-                                .restitution = 0.7,
-                                .friction = 0.5};
     std::vector<GrainState> grains;
     for (int k = 0; k < 125; ++k)
         grains.push_back({{0.0105 * (k % 5), 0.0105 * (k / 5 % 5), 0.0105 * (k / 25)},
@@ -189,7 +192,7 @@ TEST(Grains, MomentumIsKept) {
                           {},
                           0.005,
                           2500});
-    GrainSetup setup = grain_setup({material}, 0.005, 1e-6);
+    GrainSetup setup = grain_setup({soft_glass}, 0.005, 1e-6);
     setup.box = {3,
                  {-0.005, -0.005, -0.005},
                  {0.048, 0.048, 0.048},
@@ -207,12 +210,6 @@ TEST(Grains, MomentumIsKept) {
 
 TEST(Grains, ListsMadeAtOtherTimesChangeNothing) {
     const Communicator comm(MPI_COMM_SELF);
-    dem::GrainMaterial material{.name = "glass",
-                                .density = 2500,
-                                .youngs_modulus = 1e7,
-                                .poisson_ratio = 0.2,
-                                .restitution = 0.7,
-                                .friction = 0.5};
     std::vector<GrainState> grains;
     for (int k = 0; k < 27; ++k)
         grains.push_back({{0.0101 * (k % 3), 0.0101 * (k / 3 % 3), 0.0101 * (k / 9)},
@@ -223,7 +220,7 @@ TEST(Grains, ListsMadeAtOtherTimesChangeNothing) {
     std::vector<GrainState> ends;
     std::vector<std::uint64_t> lists;
     for (const double skin : {0.00005, 0.0005, 0.002}) {
-        GrainSetup setup = grain_setup({material}, 0.005, 1e-6);
+        GrainSetup setup = grain_setup({soft_glass}, 0.005, 1e-6);
         setup.skin = skin;
         GrainSimulation run = started(comm, setup, grains);
         run.start();
@@ -269,6 +266,26 @@ TEST(Grains, ForceBeyondAllBoundsStopsTheRun) {
         EXPECT_NE(std::string(error.what()).find("between grain 0 at (0, 0, 0) m and grain 1"),
                   std::string::npos)
             << error.what();
+    }
+}
+
+// What cannot be counted on stops the run, and says whose it is.
+TEST(Grains, AGrainThatMovesNoFiniteWayStopsTheRun) {
+    const Communicator comm(MPI_COMM_SELF);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& [velocity, spin, fault] : {std::tuple{nan, 0.0, "velocity of grain 1 is not finite"},
+                                                {0.0, nan, "angular_velocity of grain 1 is not finite"},
+                                                {1e300, 0.0, "grain 1 moves too fast to follow"}}) {
+        GrainSimulation run =
+            started(comm, grain_setup({soft_glass}, 0.005, 1e-6),
+                    {{{}, {}, {}, 0.005, 2500}, {{1, 0, 0}, {0, velocity, 0}, {spin, 0, 0}, 0.005, 2500}});
+        try {
+            run.start();
+            for (int k = 0; k < 3; ++k) run.step();
+            ADD_FAILURE() << "no stop: " << fault;
+        } catch (const AgreedError& error) {
+            EXPECT_NE(std::string(error.what()).find(fault), std::string::npos) << error.what();
+        }
     }
 }
 

@@ -1,5 +1,9 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "domain/grain_fields.hpp"
@@ -93,6 +97,92 @@ TEST(SetupGrains, RefusesWhatCannotBe) {
     expect_fault("radius = 0.001", "radius = 0.001\nrolling_friction = 1", "rolling_friction");
     expect_fault("[[wall]]", "[[contact]]\nmaterials = [\"glass\", \"steel\"]\n[[wall]]",
                  "no grains and no wall are of 'steel'");
+    expect_fault("friction = 0.5",
+                 "friction = 0.5\n[[contact]]\nmaterials = [\"glass\", \"glass\"]\nrestitution = 1.2",
+                 "contact[0].restitution = 1.2");
+}
+
+// Walls that differ along a periodic axis would be missed by the images of grains.
+TEST(SetupGrains, OnlyPlanesThatDoNotTurnStandInPeriodicBoxes) {
+    expect_fault(
+        "normal = [0, 0, 2]",
+        "normal = [0, 0, 2]\n[wall.motion]\nangular_velocity = 1\ncentre = [0, 0, 0]\naxis = [0, 0, 1]",
+        "a wall that turns needs a box that is open along all axes");
+    expect_fault("point = [0, 0, 0]\nnormal = [0, 0, 2]",
+                 "kind = \"container\"\nlower = [0, 0, 0]\nupper = [1, 1, 1]",
+                 "'container' needs a box that is open along all axes (allowed here: plane)");
+}
+
+/// A tetrahedron of 1 mm as an OBJ file; `faces` of it.
+std::string tetrahedron(int faces) {
+    const char* const lines[] = {"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 3 1 4\n"};
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    for (int k = 0; k < faces; ++k) text += lines[k];
+    return text;
+}
+
+class MeshWalls : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() / fmt::format("talus_mesh_walls_{}", getpid());
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    /// The scene in an open box, with this wall in place of the plane.
+    GrainScene read_with(const std::string& wall) const {
+        std::string text = scene_text;
+        const auto put = [&](const std::string& from, const std::string& to) {
+            text.replace(text.find(from), from.size(), to);
+        };
+        put("\"periodic\", \"periodic\", \"open\"", "\"open\", \"open\", \"open\"");
+        put("point = [0, 0, 0]\nnormal = [0, 0, 2]", wall);
+        const Communicator comm(MPI_COMM_SELF);
+        return read_grain_scene(comm, Scene::parse(text, folder_ / "s.toml"));
+    }
+    void write(const std::string& name, const std::string& content) const {
+        std::ofstream(folder_ / name) << content;
+    }
+    std::string fault_with(const std::string& wall) const {
+        try {
+            read_with(wall);
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return "no fault";
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(MeshWalls, AreReadInTheirUnitWithWarnings) {
+    write("closed.obj", tetrahedron(4));
+    const GrainScene closed = read_with("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = \"1 mm\"");
+    const auto& sheet =
+        std::get<std::shared_ptr<const dem::TriangleSurface>>(closed.simulation.walls.at(0).shape);
+    EXPECT_EQ(sheet->mesh().triangles.size(), 4U);
+    EXPECT_DOUBLE_EQ(sheet->upper().x, 0.001);
+    EXPECT_TRUE(closed.warnings.empty());
+
+    write("open.obj", tetrahedron(3));
+    const GrainScene open = read_with("kind = \"mesh\"\nfile = \"open.obj\"");
+    ASSERT_EQ(open.warnings.size(), 1U);
+    EXPECT_NE(open.warnings[0].find("wall 'floor': "), std::string::npos) << open.warnings[0];
+    EXPECT_NE(open.warnings[0].find("3 edges belong to one triangle only"), std::string::npos)
+        << open.warnings[0];
+}
+
+TEST_F(MeshWalls, FaultsNameTheFile) {
+    const auto expect = [&](const std::string& wall, const std::string& fault) {
+        const std::string found = fault_with(wall);
+        EXPECT_NE(found.find(fault), std::string::npos) << found;
+    };
+    expect("kind = \"mesh\"", "wall[0].file");
+    expect("kind = \"mesh\"\nfile = \"none.obj\"", "none.obj");
+    write("empty.obj", "v 0 0 0\n");
+    expect("kind = \"mesh\"\nfile = \"empty.obj\"", "empty.obj");
+    write("closed.obj", tetrahedron(4));
+    expect("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = 0", "wall[0].file_unit = 0");
 }
 
 }  // namespace
