@@ -8,6 +8,7 @@
 
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
+#include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
 
 namespace talus {
@@ -44,7 +45,8 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       setup_(std::move(setup)),
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
-      pairs_(history_count(setup_.laws)) {
+      pairs_(history_count(setup_.laws)),
+      clumps_(setup_.clumps, setup_.held) {
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
@@ -53,7 +55,8 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     largest_radius_ = comm_.all_max(largest_radius_);
     reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
     decomposition_.expect(grains_);
-    grid_ = std::make_unique<CellGrid>(setup_.box, 2 * largest_radius_ + listed_gap(), 1);
+    const double searched = std::max(2 * largest_radius_ + listed_gap(), 1.001 * clumps_.greatest_extent());
+    grid_ = std::make_unique<CellGrid>(setup_.box, searched, 1);
     decomposition_.divide(grains_, *grid_);
 }
 
@@ -65,6 +68,11 @@ void GrainSimulation::add_fields(ParticleSet& grains) {
         grains.add(*info);
 }
 
+void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
+    add_fields(grains);
+    if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
+}
+
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
     std::vector<const FieldInfo*> fields{&field::sliding};
     if (history_count(setup.laws) > 3) fields.push_back(&field::rolling);
@@ -72,8 +80,10 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 }
 
 void GrainSimulation::start() {
+    clumps_.start(grains_, places_);
     arrange({}, time_);
     dem::predict(grains_, 0);
+    clumps_.predict(grains_, 0);
     evaluate(0);
     finish(0);
 }
@@ -88,8 +98,10 @@ void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet&
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
     dem::drift(grains_, setup_.time_step, places_);
+    clumps_.drift(grains_, setup_.time_step, places_);
     if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
     dem::predict(grains_, setup_.time_step);
+    clumps_.predict(grains_, setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
@@ -117,12 +129,18 @@ void GrainSimulation::evaluate(double time_step) {
     rows_.update(grains_, own, grains_.size_with_halo());
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
     evaluated_ += pairs_.touching_count + at_walls_.touches().size();
+    if (!clumps_.exists()) return;
+    clumps_.take_forces(grains_, sums_, units_);
+    phases_.enter(Phase::halo);
+    halo.begin(grains_, {&field::sphere_force, &field::sphere_torque});
+    halo.finish();
 }
 
 void GrainSimulation::finish(double kick_step) {
     phases_.enter(Phase::motion);
     const double moved2 =
-        dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step);
+        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step),
+                 clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
@@ -209,6 +227,9 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
     halo.finish();
     describe_grains();
     list_contacts(records, time);
+    if (const std::uint64_t alone = clumps_.find_spheres(grains_);
+        alone != dem::ClumpMotion::everybody && fault_.empty())
+        fault_ = fmt::format("step {}, time {} s: the clump of grain {} is torn apart", step_, time_, alone);
     ++lists_;
 }
 
@@ -222,10 +243,11 @@ void GrainSimulation::describe_grains() {
         units[i] =
             dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
     rows_.reset(grains_, units);
+    if (clumps_.exists()) units_ = units;
     responses_.acceleration.resize(own);
     responses_.angular.resize(own);
     for (std::size_t i = 0; i < own; ++i) {
-        const double mobile = setup_.held[body[i]] ? 0.0 : 1.0;
+        const double mobile = setup_.held[body[i]] || clumps_.of_body(body[i]) ? 0.0 : 1.0;
         responses_.acceleration[i] = mobile * units[i] / mass[i];
         responses_.angular[i] = mobile * units[i] * radius[i] / (0.4 * mass[i] * radius[i] * radius[i]);
     }
@@ -240,6 +262,7 @@ void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& recor
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
     const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
+    clumps_.remove_inner_pairs(grains_, pairs_);
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
@@ -273,7 +296,7 @@ ParticleSet GrainSimulation::save() {
 
 std::uint64_t GrainSimulation::bytes_of_lists() const {
     std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    bytes += pairs_.bytes() + at_walls_.bytes();
+    bytes += pairs_.bytes() + at_walls_.bytes() + clumps_.bytes() + units_.capacity() * sizeof(double);
     for (const std::vector<double>* values :
          {&responses_.acceleration, &responses_.angular, &responses_.start[0], &responses_.start[1],
           &responses_.start[2]})
@@ -295,23 +318,28 @@ GrainTotals GrainSimulation::totals() const {
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
     std::array<std::uint64_t, 3> counts{};  // contacts, at walls, grains that are not held
     for (std::size_t i = 0; i < grains_.size(); ++i) {
+        counts[2] += setup_.held[body[i]] ? 0 : 1;
+        const dem::ClumpBody* clump = clumps_.of_body(body[i]);
+        if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
+        const Field<double>&centre = clump ? field::clump_centre : field::position,
+              &velocity = clump ? field::clump_velocity : field::velocity;
         double speed2 = 0, spin2 = 0, potential_per_mass = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            const double v = grains_.data(field::velocity, axis)[i],
+            const double v = grains_.data(velocity, axis)[i],
                          w = grains_.data(field::angular_velocity, axis)[i];
             speed2 += v * v;
             spin2 += w * w;
             const auto a = static_cast<std::size_t>(axis);
             if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
-                potential_per_mass -= g[a] * grains_.data(field::position, axis)[i];
+                potential_per_mass -= g[a] * grains_.data(centre, axis)[i];
             sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
         }
         sums[mass].add(m[i]);
         sums[kinetic].add(0.5 * m[i] * speed2);
-        sums[rotational].add(0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
+        sums[rotational].add(clump ? clumps_.rotational_energy(grains_, i)
+                                   : 0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
         sums[potential].add(m[i] * potential_per_mass);
         greatest_speed2 = std::max(greatest_speed2, speed2);
-        counts[2] += setup_.held[body[i]] ? 0 : 1;
     }
     std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
     for (std::size_t k = 0; k < pairs_.touching_count; ++k) {

@@ -9,6 +9,7 @@
 #include "comm/decomposition.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
+#include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
@@ -19,10 +20,11 @@ namespace talus {
 
 /// Everything that defines a run of grains besides the grains: what a scene says, resolved.
 struct GrainSetup {
-    Box box;                             ///< three-dimensional; open or periodic along each axis
-    dem::AnyLawTable laws;               ///< of all pairs of materials
-    std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
-    std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
+    Box box;                                  ///< three-dimensional; open or periodic along each axis
+    dem::AnyLawTable laws;                    ///< of all pairs of materials
+    std::vector<std::uint8_t> material;       ///< of each body of grains, an index into `laws`
+    std::vector<std::uint8_t> held;           ///< one a body: 1 if its grains never move
+    std::vector<dem::ClumpBody> clumps = {};  ///< one a body, or none at all
     std::vector<dem::Wall> walls;
     dem::Vector3<> gravity;  ///< [m s-2]
     double time_step = 0;    ///< the same throughout [s]
@@ -52,6 +54,8 @@ class GrainSimulation {
     GrainSimulation(const Communicator& comm, GrainSetup setup, ParticleSet grains);
 
     static void add_fields(ParticleSet& grains);
+    /// The same and what the setup asks for besides.
+    static void add_fields(ParticleSet& grains, const GrainSetup& setup);
     /// What contacts of the setup's law remember.
     static std::vector<const FieldInfo*> history_fields(const GrainSetup& setup);
 
@@ -70,6 +74,7 @@ class GrainSimulation {
     std::uint64_t step_count() const { return step_; }
     const ParticleSet& grains() const { return grains_; }
     const GrainSetup& setup() const { return setup_; }
+    const dem::ClumpMotion& clumps() const { return clumps_; }
     const Communicator& comm() const { return comm_; }
     const Decomposition& decomposition() const { return decomposition_; }
     std::uint64_t total_grains() const { return decomposition_.total_particles(); }
@@ -113,7 +118,9 @@ class GrainSimulation {
     dem::WallContacts at_walls_;
     std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
     dem::GrainRows rows_;
+    dem::ClumpMotion clumps_;
     dem::Responses responses_;
+    std::vector<double> units_;  ///< of force of each grain and copy, if there are clumps [N]
     std::vector<dem::ForceSum> sums_;
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;

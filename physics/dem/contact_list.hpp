@@ -38,9 +38,29 @@ struct ContactList {
         second.push_back(second_);
         law.push_back(static_cast<std::uint16_t>(law_));
     }
+    /// Takes out pairs of a new list.
+    template <class Condition>
+    void remove_if(Condition&& condition);
     /// Makes room for the memory of what was added: nothing touches yet.
     void finish();
 };
+
+template <class Condition>
+void ContactList::remove_if(Condition&& condition) {
+    std::size_t kept = 0, kept_own = 0;
+    for (std::size_t p = 0; p < size(); ++p) {
+        if (condition(first[p], second[p])) continue;
+        first[kept] = first[p];
+        second[kept] = second[p];
+        law[kept++] = law[p];
+        if (p < own_count) kept_own = kept;
+    }
+    first.resize(kept);
+    second.resize(kept);
+    law.resize(kept);
+    own_count = kept_own;
+    finish();
+}
 
 /// What pairs a list of grains must hold.
 struct PairRule {

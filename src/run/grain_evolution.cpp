@@ -51,7 +51,7 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
                                     const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
     ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
-    ParticleSet grains = empty_grains();
+    ParticleSet grains = empty_grains(setup_.simulation);
     ParticleSet contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.simulation));
     found.state = read_checkpoint(comm_, found.file, {&grains, &contacts});
     if (const std::vector<std::string> wanted = materials(); found.state.materials != wanted)

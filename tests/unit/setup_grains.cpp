@@ -102,6 +102,36 @@ TEST(SetupGrains, RefusesWhatCannotBe) {
                  "contact[0].restitution = 1.2");
 }
 
+// Eight places, two spheres at each: 1 mm apart, of 1 mm radius.
+TEST(SetupGrains, ClumpsStandAtThePlacesOfAPacking) {
+    const std::string table =
+        "[clumps.pair]\nx = [\"-0.5 mm\", \"0.5 mm\"]\ny = [0, 0]\nz = [0, 0]\nradii = [0.001, 0.001]\n";
+    const auto with = [&](const std::string& key, const std::string& clumps) {
+        return replaced("radius = 0.001", key) + clumps;
+    };
+    const Communicator comm(MPI_COMM_SELF);
+    for (const bool turned : {false, true}) {
+        const GrainScene scene =
+            read(with(turned ? "clump = \"pair\"" : "clump = \"pair\"\norientation = \"aligned\"", table));
+        const ParticleSet grains = make_grains(comm, scene);
+        ASSERT_EQ(grains.size(), 2U * 10 * 10 * 8);
+        const double* x = grains.data(field::position, 0);
+        EXPECT_EQ(std::abs(x[1] - x[0] - 0.001) < 1e-12, !turned);
+        const dem::ClumpBody& clump = scene.simulation.clumps.at(0);
+        // Two balls less the lens that they share, 5 pi/12 r^3.
+        EXPECT_NEAR(clump.mass(), 2500 * (8.0 / 3 - 5.0 / 12) * M_PI * 1e-9, 1e-4 * clump.mass());
+        EXPECT_EQ(grains.data(field::mass)[5], clump.mass());
+    }
+    EXPECT_NE(fault_of(with("clump = \"trio\"", table)).find("there is no table [clumps.trio]"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with("clump = \"pair\"", "[clumps.pair]\nx = [0]\ny = [0]\nz = [0]\nradii = [0]\n"))
+                  .find("lengths above 0"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with("clump = \"pair\"", "[clumps.pair]\nx = [0]\ny = [0]\nz = [0]\nradii = [1, 1]\n"))
+                  .find("clumps.pair.x"),
+              std::string::npos);
+}
+
 // Walls that differ along a periodic axis would be missed by the images of grains.
 TEST(SetupGrains, OnlyPlanesThatDoNotTurnStandInPeriodicBoxes) {
     expect_fault(
