@@ -238,7 +238,7 @@ void GrainSimulation::describe_grains() {
 void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records, double time) {
     const std::size_t materials =
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
-    const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
+    const dem::PairRule rule{listed_gap(), largest_radius_, setup_.material, setup_.held, materials};
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };

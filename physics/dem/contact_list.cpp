@@ -1,10 +1,10 @@
 #include "physics/dem/contact_list.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "domain/grain_fields.hpp"
 #include "domain/lanes.hpp"
+#include "physics/dem/size_levels.hpp"
 
 namespace talus::dem {
 
@@ -22,59 +22,76 @@ void ContactList::finish() {
     touching_count = 0;
 }
 
-void list_pairs(const ParticleSet& grains, const CellTable& table, const PairRule& rule, ContactList& list) {
-    const std::array<const double*, 3> x{grains.data(field::position, 0), grains.data(field::position, 1),
-                                         grains.data(field::position, 2)};
-    const double* radius = grains.data(field::radius);
-    const std::uint8_t* body = grains.data(field::body);
-    const std::uint64_t* id = grains.data(field::copied_id);
-    const auto own = static_cast<std::uint32_t>(grains.size());
+namespace {
+
+/// Puts pairs into a list, those with copies after those of own grains.
+class ListedPairs {
+  public:
+    ListedPairs(const ParticleSet& grains, const PairRule& rule, ContactList& list)
+        : body_(grains.data(field::body)),
+          id_(grains.data(field::copied_id)),
+          own_(grains.size()),
+          rule_(rule),
+          list_(list) {
+        list_.clear();
+    }
+
+    /// `both_ways`: pairs of own grains come from either side.
+    void add(std::uint32_t i, std::uint32_t j, bool both_ways) {
+        if (i == j || (rule_.held[body_[i]] && rule_.held[body_[j]]) || (i >= own_ && j >= own_)) return;
+        const bool in_order = id_[i] < id_[j];
+        const Pair pair = in_order ? Pair{i, j} : Pair{j, i};
+        if (i >= own_ || j >= own_)
+            with_copies_.push_back(pair);
+        else if (in_order || !both_ways)
+            add_to_list(pair);
+    }
+
+    void finish() {
+        list_.own_count = list_.size();
+        for (const Pair& pair : with_copies_) add_to_list(pair);
+        list_.finish();
+    }
+
+  private:
     struct Pair {
         std::uint32_t first, second;
     };
-    std::vector<Pair> with_copies;
-    std::vector<std::uint32_t> near;
-    list.clear();
-    const auto add = [&](std::uint32_t first, std::uint32_t second) {
-        list.add(first, second, rule.material[body[first]] * rule.materials + rule.material[body[second]]);
-    };
+    void add_to_list(const Pair& pair) {
+        list_.add(pair.first, pair.second,
+                  rule_.material[body_[pair.first]] * rule_.materials + rule_.material[body_[pair.second]]);
+    }
+
+    const std::uint8_t* body_;
+    const std::uint64_t* id_;
+    std::size_t own_;
+    const PairRule& rule_;
+    ContactList& list_;
+    std::vector<Pair> with_copies_;
+};
+
+}  // namespace
+
+void list_pairs(const ParticleSet& grains, const CellTable& table, const PairRule& rule, ContactList& list) {
+    ListedPairs pairs(grains, rule, list);
+    if (!SizeLevels::one_is_enough(grains, rule.largest_radius)) {
+        SizeLevels(grains, rule.margin).for_each_pair([&](std::uint32_t i, std::uint32_t j, bool one_level) {
+            pairs.add(i, j, one_level);
+        });
+        return pairs.finish();
+    }
+    const Spheres spheres{
+        {grains.data(field::position, 0), grains.data(field::position, 1), grains.data(field::position, 2)},
+        grains.data(field::radius)};
+    NearSpheres near;
     table.for_each_own(Cells::all, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-        std::size_t room = 0;
-        for (const Run& run : runs) room += run.end - run.begin + lane_count;
-        near.resize(std::max(near.size(), room));
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            std::size_t count = 0;
-            for (const Run& run : runs)
-                for (std::uint32_t k = run.begin; k < run.end; k += lane_count) {
-                    std::array<std::uint32_t, lane_count> place;
-                    for (std::uint32_t lane = 0; lane < lane_count; ++lane)
-                        place[lane] = std::min(k + lane, run.end - 1);
-                    const bool whole = k + lane_count <= run.end;
-                    const auto values = [&](const double* from) {
-                        return whole ? load(from + k) : Lanes([&](auto lane) { return from[place[lane]]; });
-                    };
-                    const Lanes limit = values(radius) + (radius[i] + rule.margin);
-                    Lanes excess = -(limit * limit);
-                    for (const double* along : x) {
-                        const Lanes r = values(along) - along[i];
-                        excess += r * r;
-                    }
-                    if (!whole) excess = select(first_lanes(run.end - k), excess, Lanes(1.0));
-                    count += keep_negative(excess, place.data(), near.data() + count);
-                }
-            for (std::size_t k = 0; k < count; ++k) {
-                const std::uint32_t j = near[k];
-                if (j == i || (rule.held[body[i]] && rule.held[body[j]])) continue;
-                if (j >= own)
-                    with_copies.push_back(id[i] < id[j] ? Pair{i, j} : Pair{j, i});
-                else if (id[i] < id[j])
-                    add(i, j);
-            }
+            const std::array<double, 3> place{spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]};
+            for (const std::uint32_t j : near(spheres, runs, place, spheres.radius[i] + rule.margin))
+                pairs.add(i, j, true);
         }
     });
-    list.own_count = list.size();
-    for (const Pair& pair : with_copies) add(pair.first, pair.second);
-    list.finish();
+    pairs.finish();
 }
 
 }  // namespace talus::dem

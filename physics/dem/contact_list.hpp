@@ -44,7 +44,8 @@ struct ContactList {
 
 /// What pairs a list of grains must hold.
 struct PairRule {
-    double margin;                           ///< greatest gap that is listed [m]
+    double margin;          ///< greatest gap that is listed [m]
+    double largest_radius;  ///< of all ranks' grains, that the table's cells are made for [m]
     std::span<const std::uint8_t> material;  ///< of each body
     std::span<const std::uint8_t> held;      ///< one a body: pairs of such grains do not act
     std::size_t materials;                   ///< number of materials
