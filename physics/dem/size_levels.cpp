@@ -17,7 +17,8 @@ std::span<const std::uint32_t> NearSpheres::operator()(const Spheres& spheres, s
     for (const Run& run : runs)
         for (std::uint32_t k = run.begin; k < run.end; k += lane_count) {
             std::array<std::uint32_t, lane_count> at;
-            for (std::uint32_t lane = 0; lane < lane_count; ++lane) at[lane] = std::min(k + lane, run.end - 1);
+            for (std::uint32_t lane = 0; lane < lane_count; ++lane)
+                at[lane] = std::min(k + lane, run.end - 1);
             const bool whole = k + lane_count <= run.end;
             const auto values = [&](const double* from) {
                 return whole ? load(from + k) : Lanes([&](auto lane) { return from[at[lane]]; });

@@ -7,6 +7,7 @@
 #include "io/scene.hpp"
 #include "physics/dem/laws/materials.hpp"
 #include "src/grain_simulation.hpp"
+#include "src/setup/grain_sizes.hpp"
 #include "src/setup/packing.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -21,7 +22,8 @@ struct GrainBody {
     UnitCell cell;
     double spacing = 0;  ///< cube root of the volume a grain [m]
     double jitter = 0;   ///< random displacement along each axis, at most, in spacings [1]
-    double least_radius = 0, greatest_radius = 0;  ///< evenly distributed between [m]
+    GrainSizes sizes;
+    double least_radius = 0, greatest_radius = 0;  ///< of the sizes, or of the list [m]
     Point velocity{}, angular_velocity{};          ///< [m/s], [rad/s]
     /// Rows of a file in place of all that: x y z, radius, velocity, angular velocity.
     std::vector<std::array<double, 10>> listed;

@@ -35,8 +35,9 @@ std::vector<GrainState> cloud(const Case& c) {
     const Box& box = box_of(c);
     std::vector<GrainState> grains;
     for (int k = 0; k < c.grains; ++k) {
-        GrainState grain{{}, {}, {}, 0.5 * std::pow(c.ratio, -uniform(random)), 1000,
-                         static_cast<std::uint8_t>(k % 3 == 0 ? 1 : 0)};
+        GrainState grain{{},   {},
+                         {},   0.5 * std::pow(c.ratio, -uniform(random)),
+                         1000, static_cast<std::uint8_t>(k % 3 == 0 ? 1 : 0)};
         // A few large ones, as a mixture by volume has them.
         if (k > 8 && k < c.grains - 8 && c.ratio > 2) grain.radius = std::min(grain.radius, 2.2 / c.ratio);
         for (const int axis : {0, 1, 2}) {
