@@ -7,6 +7,7 @@
 
 #include "comm/communicator.hpp"
 #include "comm/decomposition.hpp"
+#include "comm/record_halo.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
 #include "physics/dem/contact_list.hpp"
@@ -113,11 +114,13 @@ class GrainSimulation {
     dem::WallContacts at_walls_;
     std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
     dem::GrainRows rows_;
+    RecordHalo rows_halo_;
     dem::Responses responses_;
     std::vector<dem::ForceSum> sums_;
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;
+    double moved_ = 0;  ///< no grain of any rank has moved farther since the last list [m]
     std::string fault_;
     std::uint64_t evaluated_ = 0, lists_ = 0;
     Phases phases_;

@@ -1,6 +1,9 @@
 #include "physics/dem/contact_list.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "domain/grain_fields.hpp"
 #include "domain/lanes.hpp"
@@ -8,18 +11,29 @@
 
 namespace talus::dem {
 
-void ContactList::clear() {
-    first.clear();
-    second.clear();
-    law.clear();
-    touching_count = own_count = 0;
+void Contacts::reserve(std::size_t more) {
+    constexpr double slack = 1.125;  // less than vectors take by themselves
+    const std::size_t least = count + more + lane_count;
+    if (pair.size() >= least) return;
+    const auto room = std::max(least, static_cast<std::size_t>(slack * static_cast<double>(pair.size())));
+    const auto grow = [room](auto& values) {
+        values.reserve(room);
+        values.resize(room);
+    };
+    grow(pair);
+    for (std::vector<double>& values : history) grow(values);
 }
 
-void ContactList::finish() {
-    last_touch.assign(size(), 0);
-    history.resize(size() * history_count);
-    touching.resize(size() + lane_count);
-    touching_count = 0;
+void Contacts::close() {
+    reserve(1);
+    pair[count] = std::numeric_limits<std::uint32_t>::max();
+    for (std::vector<double>& values : history) values[count] = 0;
+}
+
+std::size_t Contacts::bytes() const {
+    std::size_t bytes = pair.capacity() * sizeof(std::uint32_t);
+    for (const std::vector<double>& values : history) bytes += values.capacity() * sizeof(double);
+    return bytes;
 }
 
 namespace {
@@ -28,12 +42,18 @@ namespace {
 class ListedPairs {
   public:
     ListedPairs(const ParticleSet& grains, const PairRule& rule, ContactList& list)
-        : body_(grains.data(field::body)),
+        : spheres_(spheres_of(grains)),
+          body_(grains.data(field::body)),
           id_(grains.data(field::copied_id)),
           own_(grains.size()),
           rule_(rule),
           list_(list) {
-        list_.clear();
+        list_.first.clear();
+        list_.second.clear();
+        list_.chunks.clear();
+        list_.now.clear();
+        list_.before.clear();
+        list_.margin = rule.margin;
     }
 
     /// `both_ways`: pairs of own grains come from either side.
@@ -44,30 +64,63 @@ class ListedPairs {
         if (i >= own_ || j >= own_)
             with_copies_.push_back(pair);
         else if (in_order || !both_ways)
-            add_to_list(pair);
+            chunk_.push_back(pair);
+        if (chunk_.size() == ContactList::chunk_size) put(chunk_);
     }
 
     void finish() {
-        list_.own_count = list_.size();
-        for (const Pair& pair : with_copies_) add_to_list(pair);
-        list_.finish();
+        if (!chunk_.empty()) put(chunk_);
+        list_.own_chunks = list_.chunks.size();
+        for (const Pair& pair : with_copies_) {
+            chunk_.push_back(pair);
+            if (chunk_.size() == ContactList::chunk_size) put(chunk_);
+        }
+        if (!chunk_.empty()) put(chunk_);
     }
 
   private:
     struct Pair {
         std::uint32_t first, second;
     };
-    void add_to_list(const Pair& pair) {
-        list_.add(pair.first, pair.second,
-                  rule_.material[body_[pair.first]] * rule_.materials + rule_.material[body_[pair.second]]);
+
+    /// Appends a chunk, sorted by classes of gaps, which is empty then.
+    void put(std::vector<Pair>& pairs) {
+        std::array<std::uint8_t, ContactList::chunk_size> of_class;
+        ContactList::Chunk chunk{static_cast<std::uint32_t>(list_.size()), {}};
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            of_class[k] = static_cast<std::uint8_t>(list_.class_of(gap(pairs[k])));
+            ++chunk.up_to[of_class[k]];
+        }
+        std::array<std::uint16_t, ContactList::class_count> place{};
+        for (std::size_t c = 1; c < place.size(); ++c) {
+            place[c] = chunk.up_to[c - 1];
+            chunk.up_to[c] = static_cast<std::uint16_t>(chunk.up_to[c] + chunk.up_to[c - 1]);
+        }
+        list_.first.resize(chunk.begin + pairs.size());
+        list_.second.resize(chunk.begin + pairs.size());
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            const std::size_t p = chunk.begin + place[of_class[k]]++;
+            list_.first[p] = pairs[k].first;
+            list_.second[p] = pairs[k].second;
+        }
+        list_.chunks.push_back(chunk);
+        pairs.clear();
     }
 
+    double gap(const Pair& pair) const {
+        double square = 0;
+        for (const double* x : spheres_.x)
+            square += (x[pair.first] - x[pair.second]) * (x[pair.first] - x[pair.second]);
+        return std::sqrt(square) - spheres_.radius[pair.first] - spheres_.radius[pair.second];
+    }
+
+    Spheres spheres_;
     const std::uint8_t* body_;
     const std::uint64_t* id_;
     std::size_t own_;
     const PairRule& rule_;
     ContactList& list_;
-    std::vector<Pair> with_copies_;
+    std::vector<Pair> chunk_, with_copies_;
 };
 
 }  // namespace
@@ -92,6 +145,14 @@ void list_pairs(const ParticleSet& grains, const CellTable& table, const PairRul
         }
     });
     pairs.finish();
+}
+
+std::vector<std::uint8_t> copies_in(const ContactList& list, std::size_t own, std::size_t copies) {
+    std::vector<std::uint8_t> found(copies, 0);
+    for (std::size_t p = list.own_count(); p < list.size(); ++p)
+        for (const std::uint32_t i : {list.first[p], list.second[p]})
+            if (i >= own) found[i - own] = 1;
+    return found;
 }
 
 }  // namespace talus::dem

@@ -9,6 +9,12 @@
 
 namespace talus::dem {
 
+Spheres spheres_of(const ParticleSet& grains) {
+    return {
+        {grains.data(field::position, 0), grains.data(field::position, 1), grains.data(field::position, 2)},
+        grains.data(field::radius)};
+}
+
 std::span<const std::uint32_t> NearSpheres::operator()(const Spheres& spheres, std::span<const Run> runs,
                                                        const std::array<double, 3>& place, double reach) {
     std::size_t room = 0, count = 0;

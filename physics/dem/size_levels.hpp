@@ -16,6 +16,8 @@ struct Spheres {
     const double* radius;            ///< [m]
 };
 
+Spheres spheres_of(const ParticleSet& grains);
+
 /// Which spheres of the runs come nearer to a place than their radius and `reach` [m], found many at once.
 class NearSpheres {
   public:

@@ -92,7 +92,9 @@ GrainSizes read_grain_sizes(const Section& table) {
         sizes.median = table.number("median", "m", {}, positive);
         sizes.deviation = table.number("deviation", "1", {}, positive);
         constexpr double least_share = 0.01;  // what is beyond the bounds is drawn in vain
-        const auto below = [&](double r) { return normal_below(std::log(r / sizes.median) / sizes.deviation); };
+        const auto below = [&](double r) {
+            return normal_below(std::log(r / sizes.median) / sizes.deviation);
+        };
         if (sizes.least > 0 && sizes.median > 0 && below(sizes.greatest) - below(sizes.least) < least_share)
             table.error("radii", "less than a hundredth of this lognormal distribution lies between them");
     }

@@ -86,7 +86,7 @@ void compare(const Communicator& comm, const Case& c) {
     const std::uint64_t* id = set.data(field::copied_id);
     for (std::size_t p = 0; p < list.size(); ++p) {
         const std::uint32_t i = list.first[p], j = list.second[p];
-        EXPECT_EQ(p < list.own_count, i < set.size() && j < set.size());
+        EXPECT_EQ(p < list.own_count(), i < set.size() && j < set.size());
         EXPECT_LT(id[i], id[j]);
         if (i < set.size()) found.emplace_back(id[i], id[j]);
         if (j < set.size()) found.emplace_back(id[j], id[i]);
