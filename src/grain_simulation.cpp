@@ -46,7 +46,8 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
       pairs_(history_count(setup_.laws)),
-      clumps_(setup_.clumps, setup_.held) {
+      clumps_(setup_.clumps, setup_.held),
+      rows_halo_(comm, dem::GrainRows::width, dem::GrainRows::refreshed) {
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
@@ -63,8 +64,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
 void GrainSimulation::add_fields(ParticleSet& grains) {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::angular_velocity, &field::acceleration, &field::angular_acceleration,
-             &field::radius, &field::mass, &field::body, &field::predicted_velocity,
-             &field::predicted_angular_velocity, &field::copied_id})
+             &field::radius, &field::mass, &field::body, &field::copied_id})
         grains.add(*info);
 }
 
@@ -82,8 +82,6 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 void GrainSimulation::start() {
     clumps_.start(grains_, places_);
     arrange({}, time_);
-    dem::predict(grains_, 0);
-    clumps_.predict(grains_, 0);
     evaluate(0);
     finish(0);
 }
@@ -100,8 +98,6 @@ void GrainSimulation::step() {
     dem::drift(grains_, setup_.time_step, places_);
     clumps_.drift(grains_, setup_.time_step, places_);
     if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
-    dem::predict(grains_, setup_.time_step);
-    clumps_.predict(grains_, setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
@@ -111,29 +107,27 @@ void GrainSimulation::step() {
 
 /// Forces and torques of all contacts, those of own grains while copies are on their way.
 void GrainSimulation::evaluate(double time_step) {
+    phases_.enter(Phase::motion);
+    rows_.predict(grains_, time_step);
+    clumps_.predict(grains_, time_step, rows_);
     phases_.enter(Phase::halo);
-    Halo& halo = decomposition_.halo();
-    halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
+    rows_halo_.begin(rows_.values());
     phases_.enter(Phase::forces);
-    const std::size_t own = grains_.size();
-    rows_.update(grains_, 0, own);
-    sums_.assign(own, {});
-    const dem::Evaluation evaluation{rows_, time_step, static_cast<std::uint32_t>(step_) + 1, sums_,
-                                     largest_radius_};
+    const double approach = 2 * moved_ + 0.001 * setup_.skin;  // and what rounding may add
+    const dem::Evaluation evaluation{rows_, time_step, approach, sums_, largest_radius_};
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
     poses_ = poses_at(time_ + time_step);
     refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
-    halo.finish();
+    rows_halo_.finish(rows_.values());
     phases_.enter(Phase::forces);
-    rows_.update(grains_, own, grains_.size_with_halo());
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
-    evaluated_ += pairs_.touching_count + at_walls_.touches().size();
+    evaluated_ += pairs_.now.count + at_walls_.touches().size();
     if (!clumps_.exists()) return;
     clumps_.take_forces(grains_, sums_, units_);
     phases_.enter(Phase::halo);
-    halo.begin(grains_, {&field::sphere_force, &field::sphere_torque});
-    halo.finish();
+    decomposition_.halo().begin(grains_, {&field::sphere_force, &field::sphere_torque});
+    decomposition_.halo().finish();
 }
 
 void GrainSimulation::finish(double kick_step) {
@@ -147,11 +141,12 @@ void GrainSimulation::finish(double kick_step) {
     if (!std::isfinite(moved2)) refuse_not_finite();
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
-    std::array<int, 2> flags{walls_moved || moved2 > allowed * allowed, !fault_.empty()};
+    std::array<double, 3> greatest{moved2, walls_moved ? 1.0 : 0.0, fault_.empty() ? 0.0 : 1.0};
     phases_.enter(Phase::wait);
-    comm_.all_max(std::span<int>(flags));
-    outdated_ = flags[0] > 0;
-    if (flags[1] > 0) comm_.all_agree(1, fault_);
+    comm_.all_max(std::span<double>(greatest));
+    moved_ = std::sqrt(greatest[0]);
+    outdated_ = moved_ > allowed || greatest[1] > 0;
+    if (greatest[2] > 0) comm_.all_agree(1, fault_);
 }
 
 void GrainSimulation::refuse_not_finite() {
@@ -173,9 +168,8 @@ void GrainSimulation::refuse_not_finite() {
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
     if (!overload.found || !fault_.empty()) return;
     const std::uint64_t* id = grains_.data(field::copied_id);
-    const std::string place = fmt::format(
-        "({:.6g}, {:.6g}, {:.6g}) m", grains_.data(field::position, 0)[overload.first],
-        grains_.data(field::position, 1)[overload.first], grains_.data(field::position, 2)[overload.first]);
+    const double* row = rows_[overload.first];
+    const std::string place = fmt::format("({:.6g}, {:.6g}, {:.6g}) m", row[0], row[1], row[2]);
     const std::string when = fmt::format("step {}, time {} s: ", step_, time_);
     if (overload.behind) {
         fault_ = when + fmt::format("grain {} at {} has left through wall '{}'", id[overload.first], place,
@@ -230,6 +224,7 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
     if (const std::uint64_t alone = clumps_.find_spheres(grains_);
         alone != dem::ClumpMotion::everybody && fault_.empty())
         fault_ = fmt::format("step {}, time {} s: the clump of grain {} is torn apart", step_, time_, alone);
+    moved_ = 0;
     ++lists_;
 }
 
@@ -242,15 +237,13 @@ void GrainSimulation::describe_grains() {
     for (std::size_t i = 0; i < all; ++i)
         units[i] =
             dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
-    rows_.reset(grains_, units);
+    rows_.reset(grains_, units, setup_.material);
     if (clumps_.exists()) units_ = units;
+    sums_.assign(own + 1, {});
     responses_.acceleration.resize(own);
-    responses_.angular.resize(own);
-    for (std::size_t i = 0; i < own; ++i) {
-        const double mobile = setup_.held[body[i]] || clumps_.of_body(body[i]) ? 0.0 : 1.0;
-        responses_.acceleration[i] = mobile * units[i] / mass[i];
-        responses_.angular[i] = mobile * units[i] * radius[i] / (0.4 * mass[i] * radius[i] * radius[i]);
-    }
+    for (std::size_t i = 0; i < own; ++i)
+        responses_.acceleration[i] =
+            setup_.held[body[i]] || clumps_.of_body(body[i]) ? 0.0 : units[i] / mass[i];
     for (int axis = 0; axis < 3; ++axis) {
         const auto x = std::as_const(grains_).own(field::position, axis);
         responses_.start[static_cast<std::size_t>(axis)].assign(x.begin(), x.end());
@@ -260,14 +253,19 @@ void GrainSimulation::describe_grains() {
 void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records, double time) {
     const std::size_t materials =
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
-    const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
+    const dem::PairRule rule{.margin = listed_gap(),
+                             .largest_radius = largest_radius_,
+                             .material = setup_.material,
+                             .held = setup_.held,
+                             .materials = materials,
+                             .left_out = clumps_.inner_pairs(grains_)};
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
-    clumps_.remove_inner_pairs(grains_, pairs_);
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
-    const auto now = static_cast<std::uint32_t>(step_) + 1;
-    dem::restore_records(map, now, id_of, id_of, pairs_);
+    dem::restore_records(map, id_of, id_of, pairs_);
+    rows_halo_.choose(decomposition_.halo(), grains_.size(),
+                      dem::copies_in(pairs_, grains_.size(), grains_.halo_size()));
     poses_ = poses_at(time);
     at_walls_.list(grains_, setup_.walls, poses_, rule);
     at_walls_.restore(records, grains_);
@@ -296,10 +294,10 @@ ParticleSet GrainSimulation::save() {
 
 std::uint64_t GrainSimulation::bytes_of_lists() const {
     std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    bytes += pairs_.bytes() + at_walls_.bytes() + clumps_.bytes() + units_.capacity() * sizeof(double);
+    bytes += pairs_.bytes() + at_walls_.bytes() + rows_halo_.bytes();
+    bytes += clumps_.bytes() + units_.capacity() * sizeof(double);
     for (const std::vector<double>* values :
-         {&responses_.acceleration, &responses_.angular, &responses_.start[0], &responses_.start[1],
-          &responses_.start[2]})
+         {&responses_.acceleration, &responses_.start[0], &responses_.start[1], &responses_.start[2]})
         bytes += values->capacity() * sizeof(double);
     return bytes;
 }
@@ -342,14 +340,12 @@ GrainTotals GrainSimulation::totals() const {
         greatest_speed2 = std::max(greatest_speed2, speed2);
     }
     std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
-    for (std::size_t k = 0; k < pairs_.touching_count; ++k) {
-        const std::uint32_t i = pairs_.first[pairs_.touching[k]], j = pairs_.second[pairs_.touching[k]];
+    for (std::size_t k = 0; k < pairs_.now.count; ++k) {
+        const std::uint32_t i = pairs_.first[pairs_.now.pair[k]], j = pairs_.second[pairs_.now.pair[k]];
         counts[0] += i < grains_.size() ? 1 : 0;
         double distance2 = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double* x = grains_.data(field::position, axis);
-            distance2 += (x[i] - x[j]) * (x[i] - x[j]);
-        }
+        for (std::size_t a = 0; a < 3; ++a)
+            distance2 += (rows_[i][a] - rows_[j][a]) * (rows_[i][a] - rows_[j][a]);
         greatest[1] = std::max(greatest[1], (r[i] + r[j] - std::sqrt(distance2)) / std::min(r[i], r[j]));
     }
     for (const dem::WallTouch& touch : at_walls_.touches()) {

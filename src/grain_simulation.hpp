@@ -7,6 +7,7 @@
 
 #include "comm/communicator.hpp"
 #include "comm/decomposition.hpp"
+#include "comm/record_halo.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
 #include "physics/dem/clumps/clump_motion.hpp"
@@ -119,12 +120,14 @@ class GrainSimulation {
     std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
     dem::GrainRows rows_;
     dem::ClumpMotion clumps_;
+    RecordHalo rows_halo_;
     dem::Responses responses_;
     std::vector<double> units_;  ///< of force of each grain and copy, if there are clumps [N]
     std::vector<dem::ForceSum> sums_;
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;
+    double moved_ = 0;  ///< no grain of any rank has moved farther since the last list [m]
     std::string fault_;
     std::uint64_t evaluated_ = 0, lists_ = 0;
     Phases phases_;

@@ -67,18 +67,11 @@ void read_packing(const Section& table, const BodyContext& context, GrainBody& b
         body.least_radius = least;
         body.greatest_radius = greatest;
         reached = body.clump->bounding_radius;
-    } else if (table.has("radii")) {
-        const std::vector<double> radii = table.numbers("radii", "m", 2);
-        if (radii.size() == 2 && 0 < radii[0] && radii[0] <= radii[1]) {
-            body.least_radius = radii[0];
-            body.greatest_radius = radii[1];
-        } else {
-            table.error("radii", "must be two radii above 0 in order");
-        }
     } else {
-        body.least_radius = body.greatest_radius = table.number("radius", "m", {}, positive);
+        body.sizes = read_grain_sizes(table);
+        body.least_radius = body.sizes.least;
+        body.greatest_radius = reached = body.sizes.greatest;
     }
-    if (!body.clump) reached = body.greatest_radius;
     body.shape = read_shape(table, body.material.density, context);
     const bool cubic = table.choice("lattice", {"cubic", "close_packed"}, "cubic") == "cubic";
     body.cell = lattice_cell(cubic ? Lattice::cubic : Lattice::close_packed, 3);
@@ -232,7 +225,7 @@ std::vector<Row> packed(const GrainBody& body, const RandomStream& random, std::
             row[4 + a] = body.velocity[a];
             row[7 + a] = body.angular_velocity[a];
         }
-        row[3] = body.least_radius + (body.greatest_radius - body.least_radius) * random.uniform(id, 3);
+        row[3] = body.sizes.radius(random, id, 3);
         rows.push_back(row);
     });
     return rows;

@@ -8,6 +8,7 @@
 #include "io/scene.hpp"
 #include "physics/dem/laws/materials.hpp"
 #include "src/grain_simulation.hpp"
+#include "src/setup/grain_sizes.hpp"
 #include "src/setup/packing.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -22,7 +23,9 @@ struct GrainBody {
     UnitCell cell;
     double spacing = 0;  ///< cube root of the volume a grain [m]
     double jitter = 0;   ///< random displacement along each axis, at most, in spacings [1]
-    double least_radius = 0, greatest_radius = 0;  ///< evenly distributed between [m]
+    GrainSizes sizes;
+    double least_radius = 0,
+           greatest_radius = 0;  ///< of the sizes, of the list or of the clump's spheres [m]
     std::shared_ptr<const dem::ClumpShape> clump;  ///< that each place of the packing gets, if any
     bool turned = false;                           ///< clumps are, each its own way
     Point velocity{}, angular_velocity{};          ///< [m/s], [rad/s]

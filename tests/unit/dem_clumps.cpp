@@ -35,12 +35,15 @@ TEST(ClumpShapes, WhatSpheresShareCountsOnce) {
     const ClumpShape shape = clump_shape(centres, std::vector<double>{1, 1});
     EXPECT_NEAR(shape.volume, 2 * 4.0 / 3 * pi - 5 * pi / 12, 1e-4 * 7);
     // About the axis: 2 * integral over y in (-1, 1/2) of pi/2 (1 - y^2)^2.
-    const auto primitive = [](double y) { return pi / 2 * (y - 2.0 / 3 * y * y * y + y * y * y * y * y / 5); };
+    const auto primitive = [](double y) {
+        return pi / 2 * (y - 2.0 / 3 * y * y * y + y * y * y * y * y / 5);
+    };
     const double along = 2 * (primitive(0.5) - primitive(-1));
     EXPECT_NEAR(shape.inertia.x, along, 1e-4 * along);
     // Across, through the middle: half of that and 2 * integral of (y - 1/2)^2 pi (1 - y^2).
     const auto second = [](double y) {
-        return pi * (y * y * y / 3 - y * y / 2 + y / 4 - y * y * y * y * y / 5 + y * y * y * y / 4 - y * y * y / 12);
+        return pi * (y * y * y / 3 - y * y / 2 + y / 4 - y * y * y * y * y / 5 + y * y * y * y / 4 -
+                     y * y * y / 12);
     };
     const double across = along / 2 + 2 * (second(0.5) - second(-1));
     EXPECT_NEAR(shape.inertia.y, across, 1e-4 * across);
@@ -87,9 +90,8 @@ TEST(ClumpRotation, SymmetricTopPrecesses) {
     const Vector3<> inertia{2, 2, 0.7}, momentum{0.8, 0.3, 1.1};
     const double time = 7, length = norm(momentum), about = 0.5 * length * time / inertia.x,
                  spin = 0.5 * momentum.z * time * (1 / inertia.z - 1 / inertia.x);
-    const Quaternion exact =
-        Quaternion{std::cos(about), (std::sin(about) / length) * momentum} *
-        Quaternion{std::cos(spin), {0, 0, std::sin(spin)}};
+    const Quaternion exact = Quaternion{std::cos(about), (std::sin(about) / length) * momentum} *
+                             Quaternion{std::cos(spin), {0, 0, std::sin(spin)}};
     std::array<double, 2> error{};
     for (const int k : {0, 1}) {
         const Quaternion q = turned(momentum, inertia, time, k == 0 ? 200 : 400).orientation;

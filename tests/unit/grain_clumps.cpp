@@ -22,14 +22,15 @@ constexpr double radius = 0.005;
 GrainSetup dumbbells(dem::GrainMaterial material, double time_step) {
     GrainSetup setup = grain_setup({material}, radius, time_step);
     const std::vector<Vector3<>> centres{{-0.004, 0, 0}, {0.004, 0, 0}};
-    setup.clumps = {{std::make_shared<dem::ClumpShape>(dem::clump_shape(centres, std::vector{radius, radius})), 0,
-                     material.density}};
+    setup.clumps = {
+        {std::make_shared<dem::ClumpShape>(dem::clump_shape(centres, std::vector{radius, radius})), 0,
+         material.density}};
     return setup;
 }
 
-// A dumbbell meets a smooth floor with one end: the impulse is 2 v/(1/M + (r x n) I^-1 (r x n)) for rigid bodies
-// and e = 1 (E. J. Routh, Dynamics of a System of Rigid Bodies, art. 168). Soft spheres touch for a while and
-// turn meanwhile, by 3e-3 here: that is the tolerance.
+// A dumbbell meets a smooth floor with one end: the impulse is 2 v/(1/M + (r x n) I^-1 (r x n)) for rigid
+// bodies and e = 1 (E. J. Routh, Dynamics of a System of Rigid Bodies, art. 168). Soft spheres touch for a
+// while and turn meanwhile, by 3e-3 here: that is the tolerance.
 TEST(Clumps, ADumbbellBouncesOffAFloor) {
     const Communicator comm(MPI_COMM_SELF);
     GrainSetup setup = dumbbells(hard, 2e-7);
@@ -64,7 +65,8 @@ TEST(Clumps, OfOneSphereMovesAsASphere) {
     GrainSetup setup = grain_setup({rough}, radius, 1e-6);
     setup.gravity = {0, 0, -9.81};
     setup.walls.push_back({"floor", 0, dem::PlaneShape{{}, {0, 0, 1}}, {}});
-    GrainSimulation sphere(comm, setup, grain_set(comm, {{{0, 0, 0.0055}, {0.3, 0.1, -0.2}, {}, radius, 2500}}));
+    GrainSimulation sphere(comm, setup,
+                           grain_set(comm, {{{0, 0, 0.0055}, {0.3, 0.1, -0.2}, {}, radius, 2500}}));
     const std::vector<Vector3<>> centre{{0, 0, 0}};
     setup.clumps = {
         {std::make_shared<dem::ClumpShape>(dem::clump_shape(centre, std::vector{radius})), 0, rough.density}};
@@ -80,8 +82,8 @@ TEST(Clumps, OfOneSphereMovesAsASphere) {
     EXPECT_LT(norm(a.angular_velocity - b.angular_velocity), 1e-6);
 }
 
-// Elastic and smooth dumbbells in a cloud of their own, nothing else: energy, momentum and angular momentum stay,
-// and so do the distances within each.
+// Elastic and smooth dumbbells in a cloud of their own, nothing else: energy, momentum and angular momentum
+// stay, and so do the distances within each.
 TEST(Clumps, ACloudKeepsWhatIsConserved) {
     const Communicator comm(MPI_COMM_SELF);
     const GrainSetup setup = dumbbells(hard, 1e-6);
@@ -89,10 +91,11 @@ TEST(Clumps, ACloudKeepsWhatIsConserved) {
     for (int k = 0; k < 27; ++k) {
         const Vector3<> centre{0.019 * (k % 3), 0.019 * (k / 3 % 3), 0.019 * (k / 9)};
         const double half = 0.5 * k;
-        states.push_back({centre,
-                          -20 * (centre - Vector3<>{0.019, 0.019, 0.019}) + Vector3<>{0, 0.1 * std::sin(k), 0},
-                          {std::cos(half), {0.6 * std::sin(half), 0, 0.8 * std::sin(half)}},
-                          {0, 1e-6 * std::cos(k), 0}});
+        states.push_back(
+            {centre,
+             -20 * (centre - Vector3<>{0.019, 0.019, 0.019}) + Vector3<>{0, 0.1 * std::sin(k), 0},
+             {std::cos(half), {0.6 * std::sin(half), 0, 0.8 * std::sin(half)}},
+             {0, 1e-6 * std::cos(k), 0}});
     }
     GrainSimulation run(comm, setup, clump_set(comm, setup, states));
     const auto angular = [&] {

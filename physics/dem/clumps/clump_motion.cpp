@@ -121,9 +121,10 @@ struct Motion {
           velocity(state.velocity),
           turning(angular_velocity(state.angular_momentum, body.inertia(), axes)) {}
 
+    Vector3<> velocity_at(const Vector3<>& arm) const { return velocity + cross(turning, axes.turned(arm)); }
     void give(const Vectors& velocities, const Vectors& spins, std::size_t i, const Vector3<>& arm) const {
         spins.put(i, turning);
-        velocities.put(i, velocity + cross(turning, axes.turned(arm)));
+        velocities.put(i, velocity_at(arm));
     }
 };
 
@@ -159,31 +160,29 @@ void ClumpMotion::drift(ParticleSet& grains, double time_step, const PeriodicPla
     if (!exists_) return;
     const ClumpFields clump(grains);
     const auto own = static_cast<std::uint32_t>(grains.size());
-    for_each_clump(grains, [&](std::size_t some, const ClumpBody& body,
-                               std::span<const std::uint32_t> spheres) {
-        const ClumpState state = clump.state(some);
-        const Vector3<> moved = rounded(
-            places, time_step * (state.velocity + (0.5 * time_step) * clump.acceleration[some]));
-        const Vector3<> momentum =
-            state.angular_momentum + (0.5 * time_step) * clump.torque[some];
-        const Quaternion turned = turned_freely(state.orientation, momentum, body.inertia(), time_step);
-        const RotationMatrix axes(turned);
-        for (std::size_t k = 0; k < spheres.size(); ++k) {
-            const std::uint32_t i = spheres[k];
-            if (i >= own) continue;
-            // Spheres on both sides of a periodic boundary each have their own image of the centre.
-            const Vector3<> centre = clump.centre[i] + moved;
-            clump.centre.put(i, centre);
-            clump.turn(i, turned);
-            clump.position.put(i, centre + rounded(places, axes.turned(body.shape->centres[k])));
-        }
-    });
+    for_each_clump(
+        grains, [&](std::size_t some, const ClumpBody& body, std::span<const std::uint32_t> spheres) {
+            const ClumpState state = clump.state(some);
+            const Vector3<> moved =
+                rounded(places, time_step * (state.velocity + (0.5 * time_step) * clump.acceleration[some]));
+            const Vector3<> momentum = state.angular_momentum + (0.5 * time_step) * clump.torque[some];
+            const Quaternion turned = turned_freely(state.orientation, momentum, body.inertia(), time_step);
+            const RotationMatrix axes(turned);
+            for (std::size_t k = 0; k < spheres.size(); ++k) {
+                const std::uint32_t i = spheres[k];
+                if (i >= own) continue;
+                // Spheres on both sides of a periodic boundary each have their own image of the centre.
+                const Vector3<> centre = clump.centre[i] + moved;
+                clump.centre.put(i, centre);
+                clump.turn(i, turned);
+                clump.position.put(i, centre + rounded(places, axes.turned(body.shape->centres[k])));
+            }
+        });
 }
 
-void ClumpMotion::predict(ParticleSet& grains, double time_step) const {
+void ClumpMotion::predict(ParticleSet& grains, double time_step, GrainRows& rows) const {
     if (!exists_) return;
     const ClumpFields clump(grains);
-    const Vectors velocities(grains, field::predicted_velocity), spins(grains, field::predicted_angular_velocity);
     const auto own = static_cast<std::uint32_t>(grains.size());
     for_each_clump(grains, [&](std::size_t some, const ClumpBody& body,
                                std::span<const std::uint32_t> spheres) {
@@ -193,7 +192,7 @@ void ClumpMotion::predict(ParticleSet& grains, double time_step) const {
         const Motion motion(body, state);
         for (std::size_t k = 0; k < spheres.size(); ++k)
             if (spheres[k] < own)
-                motion.give(velocities, spins, spheres[k], body.shape->centres[k]);
+                rows.put_velocities(spheres[k], motion.velocity_at(body.shape->centres[k]), motion.turning);
     });
 }
 
@@ -204,15 +203,13 @@ double ClumpMotion::rotational_energy(const ParticleSet& grains, std::size_t i) 
                                       RotationMatrix(state.orientation)));
 }
 
-void ClumpMotion::remove_inner_pairs(const ParticleSet& grains, ContactList& list) const {
-    if (!exists_) return;
-    const std::uint64_t* id = grains.data(field::copied_id);
-    const std::uint8_t* body = grains.data(field::body);
-    const auto inner = [&](std::uint32_t i, std::uint32_t j) {
+std::function<bool(std::uint32_t, std::uint32_t)> ClumpMotion::inner_pairs(const ParticleSet& grains) const {
+    if (!exists_) return {};
+    return [this, id = grains.data(field::copied_id), body = grains.data(field::body)](std::uint32_t i,
+                                                                                       std::uint32_t j) {
         const ClumpBody* clump = body[i] == body[j] ? of_body(body[i]) : nullptr;
         return clump && id[i] - clump->sphere(id[i]) == id[j] - clump->sphere(id[j]);
     };
-    list.remove_if(inner);
 }
 
 std::uint64_t ClumpMotion::find_spheres(const ParticleSet& grains) {
@@ -265,42 +262,41 @@ double ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses,
     const auto own = static_cast<std::uint32_t>(grains.size());
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
     double most = 0, spoilt = 0;  // 0 unless a value is infinite or NaN
-    for_each_clump(grains, [&](std::size_t some, const ClumpBody& body,
-                               std::span<const std::uint32_t> spheres) {
-        ClumpState state = clump.state(some);
-        const RotationMatrix axes(state.orientation);
-        Vector3<> force, torque;
-        for (std::size_t k = 0; k < spheres.size(); ++k) {
-            const Vector3<> on_sphere = sphere_force[spheres[k]];
-            force += on_sphere;
-            torque += sphere_torque[spheres[k]] +
-                      cross(axes.turned(body.shape->centres[k]), on_sphere);
-        }
-        const Vector3<> now = (1 / body.mass()) * force + gravity;
-        state.velocity += half_kick * (clump.acceleration[some] + now);
-        state.angular_momentum += half_kick * (clump.torque[some] + torque);
-        const Motion motion(body, state);
+    for_each_clump(
+        grains, [&](std::size_t some, const ClumpBody& body, std::span<const std::uint32_t> spheres) {
+            ClumpState state = clump.state(some);
+            const RotationMatrix axes(state.orientation);
+            Vector3<> force, torque;
+            for (std::size_t k = 0; k < spheres.size(); ++k) {
+                const Vector3<> on_sphere = sphere_force[spheres[k]];
+                force += on_sphere;
+                torque += sphere_torque[spheres[k]] + cross(axes.turned(body.shape->centres[k]), on_sphere);
+            }
+            const Vector3<> now = (1 / body.mass()) * force + gravity;
+            state.velocity += half_kick * (clump.acceleration[some] + now);
+            state.angular_momentum += half_kick * (clump.torque[some] + torque);
+            const Motion motion(body, state);
 
-        // Each of the angles by which turned_freely() turns is at most time x momentum over moment.
-        const double momentum = norm(state.angular_momentum) + half_step * norm(torque);
-        const Vector3<> moments = body.inertia();
-        const double angle = 3 * time_step * momentum / std::min({moments.x, moments.y, moments.z});
-        const double along = time_step * (norm(state.velocity) + half_step * norm(now));
-        for (std::size_t k = 0; k < spheres.size(); ++k) {
-            const std::uint32_t i = spheres[k];
-            if (i >= own) continue;
-            clump.velocity.put(i, state.velocity);
-            clump.acceleration.put(i, now);
-            clump.angular_momentum.put(i, state.angular_momentum);
-            clump.torque.put(i, torque);
-            motion.give(sphere_velocity, sphere_spin, i, body.shape->centres[k]);
-            const Vector3<> start{responses.start[0][i], responses.start[1][i], responses.start[2][i]};
-            const double moved = norm(clump.position[i] - start) + along +
-                                 angle * norm(body.shape->centres[k]);
-            spoilt += moved * 0.0;
-            most = std::max(most, moved);
-        }
-    });
+            // Each of the angles by which turned_freely() turns is at most time x momentum over moment.
+            const double momentum = norm(state.angular_momentum) + half_step * norm(torque);
+            const Vector3<> moments = body.inertia();
+            const double angle = 3 * time_step * momentum / std::min({moments.x, moments.y, moments.z});
+            const double along = time_step * (norm(state.velocity) + half_step * norm(now));
+            for (std::size_t k = 0; k < spheres.size(); ++k) {
+                const std::uint32_t i = spheres[k];
+                if (i >= own) continue;
+                clump.velocity.put(i, state.velocity);
+                clump.acceleration.put(i, now);
+                clump.angular_momentum.put(i, state.angular_momentum);
+                clump.torque.put(i, torque);
+                motion.give(sphere_velocity, sphere_spin, i, body.shape->centres[k]);
+                const Vector3<> start{responses.start[0][i], responses.start[1][i], responses.start[2][i]};
+                const double moved =
+                    norm(clump.position[i] - start) + along + angle * norm(body.shape->centres[k]);
+                spoilt += moved * 0.0;
+                most = std::max(most, moved);
+            }
+        });
     return spoilt == 0 ? most * most : std::numeric_limits<double>::infinity();
 }
 

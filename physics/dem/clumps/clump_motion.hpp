@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -7,8 +8,8 @@
 #include "domain/particles.hpp"
 #include "physics/dem/clumps/clump_shape.hpp"
 #include "physics/dem/clumps/rotation.hpp"
-#include "physics/dem/contact_list.hpp"
 #include "physics/dem/force_sum.hpp"
+#include "physics/dem/grain_rows.hpp"
 #include "physics/dem/motion.hpp"
 
 namespace talus::dem {
@@ -20,15 +21,15 @@ struct ClumpBody {
     double density = 0;                       ///< [kg/m3]
 
     std::uint64_t sphere(std::uint64_t id) const { return (id - first_id) % shape->radii.size(); }
-    double mass() const { return density * shape->volume; }           ///< of a clump [kg]
+    double mass() const { return density * shape->volume; }         ///< of a clump [kg]
     Vector3<> inertia() const { return density * shape->inertia; }  ///< principal moments [kg m2]
 };
 
 /// State of a clump, of which each of its spheres has a copy of its own.
 struct ClumpState {
-    Vector3<> centre, velocity;    ///< [m], [m/s]
-    Quaternion orientation;        ///< turns the principal axes into place
-    Vector3<> angular_momentum;    ///< about the centre [kg m2/s]
+    Vector3<> centre, velocity;  ///< [m], [m/s]
+    Quaternion orientation;      ///< turns the principal axes into place
+    Vector3<> angular_momentum;  ///< about the centre [kg m2/s]
 };
 ClumpState clump_state(const ParticleSet& grains, std::size_t i);
 
@@ -37,8 +38,9 @@ void place_new_sphere(ParticleSet& grains, std::size_t i, const ClumpBody& body,
                       const ClumpState& state);
 
 /// Moves spheres of clumps as the rigid bodies they belong to. Every sphere is a grain with contacts of its
-/// own; every rank that owns one computes the motion of the whole clump from the forces on all its spheres, in
-/// their order: all to the same bits, whoever owns them. The mass of each is that of its clump: what a contact feels.
+/// own; every rank that owns one computes the motion of the whole clump from the forces on all its spheres,
+/// in their order: all to the same bits, whoever owns them. The mass of each is that of its clump: what a
+/// contact feels.
 class ClumpMotion {
   public:
     /// One entry a body; `held`: one a body, 1 if its clumps never move.
@@ -56,17 +58,19 @@ class ClumpMotion {
     /// Brings the spheres of new clumps to places that PeriodicPlaces allows.
     void start(ParticleSet& grains, const PeriodicPlaces& places) const;
     void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) const;
-    void predict(ParticleSet& grains, double time_step) const;
+    /// Velocities of the end of the step, as GrainRows::predict().
+    void predict(ParticleSet& grains, double time_step, GrainRows& rows) const;
 
-    /// Takes the pairs within a clump out of a new list.
-    void remove_inner_pairs(const ParticleSet& grains, ContactList& list) const;
-    /// After the order of grains has changed: finds the spheres of the clumps. Returns the id of a grain of which one is neither own nor
-    /// a copy, or `everybody`.
+    /// Which pairs are of spheres of one clump; empty without clumps.
+    std::function<bool(std::uint32_t, std::uint32_t)> inner_pairs(const ParticleSet& grains) const;
+    /// After the order of grains has changed: finds the spheres of the clumps. Returns the id of a grain of
+    /// which one is neither own nor a copy, or `everybody`.
     std::uint64_t find_spheres(const ParticleSet& grains);
     static constexpr std::uint64_t everybody = ~std::uint64_t{0};
 
     /// What the copies need: force and torque on each own sphere.
-    void take_forces(ParticleSet& grains, std::span<const ForceSum> sums, std::span<const double> units) const;
+    void take_forces(ParticleSet& grains, std::span<const ForceSum> sums,
+                     std::span<const double> units) const;
     /// The part of the velocities that finish_step() leaves out; returns what it returns.
     double finish_step(ParticleSet& grains, const Responses& responses, const Vector3<>& gravity,
                        double kick_step, double time_step) const;

@@ -91,8 +91,8 @@ ClumpShape clump_shape(std::span<const Vector3<>> centres, std::span<const doubl
         throw std::invalid_argument("a clump needs as many radii as centres, one at least");
     if (!std::ranges::all_of(radii, [](double r) { return r > 0; }))
         throw std::invalid_argument("radii of a clump must be above 0");
-    const Moments all = overlap(centres, radii) ? of_union(centres, radii, lines)
-                                                : of_separate_spheres(centres, radii);
+    const Moments all =
+        overlap(centres, radii) ? of_union(centres, radii, lines) : of_separate_spheres(centres, radii);
     const Eigen::Vector3d middle = all.first / all.volume;
     const Eigen::Matrix3d about = all.second - all.volume * middle * middle.transpose();
     const Eigen::Matrix3d inertia = about.trace() * Eigen::Matrix3d::Identity() - about;
