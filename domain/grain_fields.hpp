@@ -27,5 +27,7 @@ inline constexpr Field<double> sliding{
 inline constexpr Field<double> rolling{
     "rolling", "rad", vector, state, owner, "rolling angle of the contact, as the first grain sees it"};
 inline constexpr Field<double> twisting{"twisting", "rad", scalar, state, owner, "twist of the contact"};
+inline constexpr Field<double> adhering{
+    "adhering", "1", scalar, state, owner, "1 if the surfaces have touched and have not torn since"};
 
 }  // namespace talus::field

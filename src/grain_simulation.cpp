@@ -19,8 +19,8 @@ std::size_t history_count(const dem::AnyLawTable& laws) {
                       laws);
 }
 
-/// Force of a contact of a grain of this material pressed in by its own radius, the greatest of all partners
-/// [N].
+/// Force of a contact of a grain of this material pressed in by its own radius, or its pull if that is more,
+/// the greatest of all partners [N].
 double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, double radius, double mass) {
     dem::ContactKinematics<double> flat{};
     flat.overlap = flat.effective_radius = radius;
@@ -29,8 +29,11 @@ double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, 
     double greatest = 0;
     std::visit(
         [&](const auto& table) {
-            for (std::size_t other = 0; other < table.pairs.materials(); ++other)
-                greatest = std::max(greatest, table.pairs(material, other).elasticity(flat, 0).normal_force);
+            for (std::size_t other = 0; other < table.pairs.materials(); ++other) {
+                const auto& law = table.pairs(material, other);
+                greatest =
+                    std::max({greatest, law.elasticity(flat, 0).normal_force, law.surface_force(flat)});
+            }
         },
         laws);
     return greatest;
@@ -66,9 +69,15 @@ void GrainSimulation::add_fields(ParticleSet& grains) {
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
-    std::vector<const FieldInfo*> fields{&field::sliding};
-    if (history_count(setup.laws) > 3) fields.push_back(&field::rolling);
-    return fields;
+    const auto fields_of = []<class Table>(const Table&) {
+        std::vector<const FieldInfo*> fields;
+        if (Table::Law::slides) fields.push_back(&field::sliding);
+        if (Table::Law::rolls) fields.push_back(&field::rolling);
+        if (Table::Law::twists) fields.push_back(&field::twisting);
+        if (Table::Law::sticks) fields.push_back(&field::adhering);
+        return fields;
+    };
+    return std::visit(fields_of, setup.laws);
 }
 
 void GrainSimulation::start() {
@@ -314,22 +323,33 @@ GrainTotals GrainSimulation::totals() const {
         counts[2] += setup_.held[body[i]] ? 0 : 1;
     }
     std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
+    const auto sticks_at = std::visit(
+        []<class Table>(const Table&) -> std::size_t {
+            return Table::Law::sticks ? Table::Law::history_count : 0;
+        },
+        setup_.laws);
+    // Laws that act across gaps list pairs that only do that.
+    const auto is_contact = [&](double overlap, const double* remembered) {
+        return reach_ == 0 || overlap > 0 || (sticks_at > 0 && remembered[sticks_at - 1] > 0);
+    };
     for (std::size_t k = 0; k < pairs_.touching_count; ++k) {
         const std::uint32_t i = pairs_.first[pairs_.touching[k]], j = pairs_.second[pairs_.touching[k]];
-        counts[0] += i < grains_.size() ? 1 : 0;
         double distance2 = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const double* x = grains_.data(field::position, axis);
             distance2 += (x[i] - x[j]) * (x[i] - x[j]);
         }
-        greatest[1] = std::max(greatest[1], (r[i] + r[j] - std::sqrt(distance2)) / std::min(r[i], r[j]));
+        const double overlap = r[i] + r[j] - std::sqrt(distance2);
+        const double* remembered = pairs_.history.data() + pairs_.touching[k] * pairs_.history_count;
+        counts[0] += i < grains_.size() && is_contact(overlap, remembered) ? 1 : 0;
+        greatest[1] = std::max(greatest[1], overlap / std::min(r[i], r[j]));
     }
     for (const dem::WallTouch& touch : at_walls_.touches()) {
         greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
+        counts[1] += is_contact(touch.overlap, touch.history.data()) ? 1 : 0;
         const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
         for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
     }
-    counts[1] = at_walls_.touches().size();
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(greatest));
     comm_.all_sum(std::span<std::uint64_t>(counts));

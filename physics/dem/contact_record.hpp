@@ -10,7 +10,7 @@
 namespace talus::dem {
 
 /// Most values that a contact law remembers.
-inline constexpr std::size_t most_history = 7;
+inline constexpr std::size_t most_history = 8;
 
 /// Names a place of a wall where a second grain would be named.
 constexpr std::uint64_t wall_key(std::uint32_t wall, std::uint32_t place) {

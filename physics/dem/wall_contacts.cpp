@@ -74,6 +74,7 @@ bool add(const Vector3<>& vector, double units_per_force, std::int64_t* sum) {
 template <class Law>
 ContactLoad<double> load_of(const Law& law, const ContactKinematics<double>& k,
                             std::array<double, most_history>& remembered) {
+    static_assert(Law::history_count <= most_history);
     typename Law::History history{};
     std::copy_n(remembered.begin(), history.size(), history.begin());
     const ContactLoad<double> load = law(k, history);

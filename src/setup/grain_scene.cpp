@@ -151,12 +151,13 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     std::vector<dem::Wall> walls = read_walls({comm, scene, box, greatest}, laws, warnings);
     const Section table = root.section("dem"), run = root.section("run");
     const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
-    check_box(root.section("box"), box, 2 * greatest + skin);
     const OutputPlan output = read_output(root);
     const PartitionMethod partition = read_partition(run);
     const int rebalance_interval = read_rebalance_interval(run);
     const std::vector<double> gravity = table.numbers("gravity", "m s-2", 3, std::vector<double>(3, 0.0));
     laws.read_pairs();
+    const double reach = scene.faulty() ? 0 : dem::greatest_reach(laws.table(), greatest);
+    check_box(root.section("box"), box, 2 * greatest + reach + skin);
     const GrainTimeStep limit = laws.time_step(bodies);
     const double time_step = table.number("time_step", "s", limit.usual, positive);
     if (time_step > limit.greatest)

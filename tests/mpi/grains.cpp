@@ -20,7 +20,9 @@ const dem::GrainMaterial glass{.name = "glass",
                                .restitution = 0.7,
                                .friction = 0.5,
                                .rolling_friction = 0.1,
-                               .rolling_damping = 0.3};
+                               .rolling_damping = 0.3,
+                               .twisting_friction = 0.5,
+                               .work_of_adhesion = 1};
 
 /// A dense cloud of two sizes.
 std::vector<GrainState> cloud() {
@@ -36,25 +38,32 @@ std::vector<GrainState> cloud() {
     return grains;
 }
 
-GrainSetup rolling_setup() {
+template <class Table>
+GrainSetup setup_under() {
     const dem::MaterialPairs pairs({glass});
     GrainSetup setup = grain_setup({glass}, 0.005, 2e-5);
-    setup.laws = dem::LawTable<dem::RollingHertzLaw>{
-        dem::PairTable<dem::RollingHertzLaw<double>>(1, [&](std::size_t a, std::size_t b) {
-            const dem::PairProperties pair = pairs(a, b);
-            return dem::RollingHertzLaw<double>{dem::hertz_mindlin(pair, dem::EndOfContact::may_attract),
-                                                {pair.friction},
-                                                {pair.rolling_friction, pair.rolling_damping},
-                                                {},
-                                                {}};
-        })};
+    setup.laws = Table{dem::PairTable<typename Table::Law>(1, [&](std::size_t a, std::size_t b) {
+        const dem::PairProperties pair = pairs(a, b);
+        typename Table::Law law;
+        if constexpr (Table::Law::sticks)
+            law.elasticity = dem::johnson_kendall_roberts(pair);
+        else
+            law.elasticity = dem::hertz_mindlin(pair, dem::EndOfContact::may_attract);
+        law.friction = {pair.friction};
+        law.rolling = {pair.rolling_friction, pair.rolling_damping};
+        if constexpr (Table::Law::twists) law.twisting = {pair.twisting_friction};
+        return law;
+    })};
     setup.gravity = {0, 0, -9.81};
     return setup;
 }
 
+GrainSetup rolling_setup() {
+    return setup_under<dem::LawTable<dem::HertzMindlin, dem::ElasticPlasticRolling>>();
+}
+
 /// Periodic along x and y, on a floor that swings.
-GrainSetup on_a_floor() {
-    GrainSetup setup = rolling_setup();
+GrainSetup on_a_floor(GrainSetup setup) {
     setup.box = {
         3, {-0.003, 0.1, 0}, {0.0993, 0.2031, 0}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
     dem::Wall floor{"floor", 0, dem::PlaneShape{{}, {0, 0, 1}}, {}};
@@ -62,6 +71,13 @@ GrainSetup on_a_floor() {
     floor.motion.translation_oscillation = {100, 0};
     setup.walls.push_back(floor);
     return setup;
+}
+
+GrainSetup on_a_floor() { return on_a_floor(rolling_setup()); }
+/// The same with all that a contact may remember.
+GrainSetup sticky_on_a_floor() {
+    return on_a_floor(setup_under<dem::LawTable<dem::JohnsonKendallRoberts, dem::ElasticPlasticRolling,
+                                                dem::ContactAreaTwisting>>());
 }
 
 /// In a turning drum through which a sheet of triangles is drawn up.
@@ -189,8 +205,12 @@ TEST_P(GrainsSameBits, AfterInterruption) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Walls, GrainsSameBits, testing::Values(&on_a_floor, &in_a_drum),
-                         [](const auto& tested) { return tested.index == 0 ? "OnAFloor" : "InADrum"; });
+INSTANTIATE_TEST_SUITE_P(Walls, GrainsSameBits,
+                         testing::Values(static_cast<MakeSetup>(&on_a_floor), &in_a_drum, &sticky_on_a_floor),
+                         [](const auto& tested) {
+                             constexpr const char* names[] = {"OnAFloor", "InADrum", "StickyOnAFloor"};
+                             return names[tested.index];
+                         });
 
 }  // namespace
 }  // namespace talus::test
