@@ -47,7 +47,8 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       setup_(std::move(setup)),
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
-      pairs_(history_count(setup_.laws)) {
+      pairs_(history_count(setup_.laws)),
+      bonds_(setup_.bonds) {
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
@@ -56,7 +57,13 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     largest_radius_ = comm_.all_max(largest_radius_);
     reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
     decomposition_.expect(grains_);
-    grid_ = std::make_unique<CellGrid>(setup_.box, 2 * largest_radius_ + listed_gap(), 1);
+    // Ranks see all that may act on their grains, and the other ends of their bonds.
+    const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
+    grid_ = std::make_unique<CellGrid>(setup_.box, 2 * largest_radius_ + seen + setup_.skin, 1);
+    if (bonds_.in_use())
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
+            grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
 }
 
@@ -82,15 +89,29 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 
 void GrainSimulation::start() {
     arrange({}, time_);
-    dem::predict(grains_, 0);
+    if (bonds_.in_use()) join_grains();
+    predict(0);
     evaluate(0);
     finish(0);
 }
 
-void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts) {
+void GrainSimulation::join_grains() {
+    double gap = 0;
+    for (const dem::BondRule& rule : setup_.bonds) gap = std::max(gap, rule.gap * largest_radius_);
+    dem::ContactList near(0);
+    const std::vector<std::uint8_t> one_material(setup_.material.size(), 0);
+    dem::list_pairs(grains_, decomposition_.table(), {gap, one_material, setup_.held, 1}, near);
+    bonds_.join(grains_, near);
+    arrange({}, time_);
+}
+
+void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts,
+                             const ParticleSet* bonds) {
     time_ = time;
     step_ = last_balance_ = step;
-    arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_), time_);
+    if (bonds)
+        bonds_.adopt(dem::read_pairs<dem::bond_values>(comm_, *bonds, dem::BondList::fields(), grains_));
+    arrange(dem::read_pairs<dem::most_history>(comm_, contacts, history_fields(setup_), grains_), time_);
     outdated_ = true;  // how far grains have moved is not known
 }
 
@@ -98,7 +119,7 @@ void GrainSimulation::step() {
     phases_.enter(Phase::motion);
     dem::drift(grains_, setup_.time_step, places_);
     if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
-    dem::predict(grains_, setup_.time_step);
+    predict(setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
@@ -106,11 +127,21 @@ void GrainSimulation::step() {
     phases_.stop();
 }
 
+void GrainSimulation::predict(double time_step) {
+    dem::predict(grains_, time_step);
+    if (bonds_.in_use()) dem::predict_half_step(grains_, time_step);
+}
+
 /// Forces and torques of all contacts, those of own grains while copies are on their way.
 void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::halo);
     Halo& halo = decomposition_.halo();
-    halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
+    if (bonds_.in_use())
+        halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity,
+                             &field::half_step_velocity, &field::half_step_angular_velocity});
+    else
+        halo.begin(grains_,
+                   {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
     phases_.enter(Phase::forces);
     const std::size_t own = grains_.size();
     rows_.update(grains_, 0, own);
@@ -125,6 +156,7 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::forces);
     rows_.update(grains_, own, grains_.size_with_halo());
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
+    if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
     evaluated_ += pairs_.touching_count + at_walls_.touches().size();
 }
 
@@ -138,7 +170,7 @@ void GrainSimulation::finish(double kick_step) {
     if (!std::isfinite(moved2)) refuse_not_finite();
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
-    std::array<int, 2> flags{walls_moved || moved2 > allowed * allowed, !fault_.empty()};
+    std::array<int, 2> flags{walls_moved || bonds_.broken() || moved2 > allowed * allowed, !fault_.empty()};
     phases_.enter(Phase::wait);
     comm_.all_max(std::span<int>(flags));
     outdated_ = flags[0] > 0;
@@ -159,6 +191,19 @@ void GrainSimulation::refuse_not_finite() {
             if (!std::isfinite(v[i] * v[i])) fastest = i;
     }
     fault_ += fmt::format("grain {} moves too fast to follow", grains_.data(field::id)[fastest]);
+}
+
+void GrainSimulation::refuse_bond(const dem::BondFault& found) {
+    if (found.kind == dem::BondFault::none || !fault_.empty()) return;
+    fault_ = fmt::format("step {}, time {} s: the bond between grains {} and {} ", step_, time_, found.first,
+                         found.second);
+    fault_ +=
+        found.kind == dem::BondFault::overload
+            ? "bears a force that is not finite, or that strains it by more than 1; a smaller time step?"
+            : fmt::format(
+                  "is longer than {} of its length at rest, which ranks cannot follow; a lower "
+                  "strength, so that it breaks before?",
+                  dem::most_stretched);
 }
 
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
@@ -210,6 +255,11 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
         decomposition_.rebalance(work);
     }
     dem::follow_grains(comm_, decomposition_, *grid_, grains_, records);
+    if (bonds_.in_use()) {
+        std::vector<dem::BondRecord> bonds = bonds_.records();
+        dem::follow_grains(comm_, decomposition_, *grid_, grains_, bonds);
+        bonds_.adopt(bonds);
+    }
     decomposition_.arrange(grains_, *grid_);
     const auto ids = std::as_const(grains_).own(field::id);
     std::copy(ids.begin(), ids.end(), grains_.data(field::copied_id));
@@ -228,8 +278,9 @@ void GrainSimulation::describe_grains() {
     const std::size_t own = grains_.size(), all = grains_.size_with_halo();
     std::vector<double> units(all);
     for (std::size_t i = 0; i < all; ++i)
-        units[i] =
-            dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
+        units[i] = dem::force_unit(
+            std::max(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]),
+                     dem::greatest_bond_force(setup_.bonds, radius[i])));
     rows_.reset(grains_, units);
     responses_.acceleration.resize(own);
     responses_.angular.resize(own);
@@ -249,6 +300,11 @@ void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& recor
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
     const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
+    if (bonds_.in_use()) {
+        if (const auto lost = bonds_.list(grains_))
+            refuse_bond({dem::BondFault::stretched, lost->front(), lost->back()});
+        bonds_.exclude_from(pairs_);
+    }
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
@@ -277,12 +333,22 @@ ParticleSet GrainSimulation::save() {
     arrange(records_of_contacts(), time_);
     outdated_ = true;
     phases_.stop();
-    return dem::saved_contacts(records_below(grains_.size()), grains_.dimension(), history_fields(setup_));
+    ParticleSet contacts = dem::empty_contacts(grains_.dimension(), history_fields(setup_));
+    dem::save_pairs(records_below(grains_.size()), history_fields(setup_), contacts);
+    return contacts;
 }
+
+ParticleSet GrainSimulation::saved_bonds() const {
+    ParticleSet bonds = dem::empty_pairs("bonds", grains_.dimension(), dem::BondList::fields());
+    dem::save_pairs(bonds_.records_below(grains_.size()), dem::BondList::fields(), bonds);
+    return bonds;
+}
+
+double GrainSimulation::stable_step_of_bonds() const { return comm_.all_min(bonds_.stable_step(grains_)); }
 
 std::uint64_t GrainSimulation::bytes_of_lists() const {
     std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    bytes += pairs_.bytes() + at_walls_.bytes();
+    bytes += pairs_.bytes() + at_walls_.bytes() + bonds_.bytes();
     for (const std::vector<double>* values :
          {&responses_.acceleration, &responses_.angular, &responses_.start[0], &responses_.start[1],
           &responses_.start[2]})
@@ -302,7 +368,8 @@ GrainTotals GrainSimulation::totals() const {
     const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
     const std::uint8_t* body = grains_.data(field::body);
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
-    std::array<std::uint64_t, 3> counts{};  // contacts, at walls, grains that are not held
+    // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
+    std::array<std::uint64_t, 5> counts{};
     for (std::size_t i = 0; i < grains_.size(); ++i) {
         double speed2 = 0, spin2 = 0, potential_per_mass = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -321,6 +388,7 @@ GrainTotals GrainSimulation::totals() const {
         sums[potential].add(m[i] * potential_per_mass);
         greatest_speed2 = std::max(greatest_speed2, speed2);
         counts[2] += setup_.held[body[i]] ? 0 : 1;
+        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
     }
     std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
     const auto sticks_at = std::visit(
@@ -350,6 +418,7 @@ GrainTotals GrainSimulation::totals() const {
         const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
         for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
     }
+    counts[3] = bonds_.count_below(grains_.size());
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(greatest));
     comm_.all_sum(std::span<std::uint64_t>(counts));
@@ -367,6 +436,8 @@ GrainTotals GrainSimulation::totals() const {
             .grains = total_grains(),
             .contacts = counts[0],
             .wall_contacts = counts[1],
+            .bonds = counts[3],
+            .broken_bonds = counts[4] / 2,
             .wall_forces = wall_forces,
             .coordination = 2 * static_cast<double>(counts[0]) / mobile};
 }

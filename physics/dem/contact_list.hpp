@@ -40,6 +40,23 @@ struct ContactList {
     }
     /// Makes room for the memory of what was added: nothing touches yet.
     void finish();
+    /// Takes pairs off a list of which nothing touches yet.
+    template <class IsUnwanted>
+    void remove_if(IsUnwanted&& is_unwanted) {
+        std::size_t kept = 0, own_kept = 0;
+        for (std::size_t p = 0; p < size(); ++p) {
+            if (is_unwanted(p)) continue;
+            own_kept += p < own_count ? 1 : 0;
+            first[kept] = first[p];
+            second[kept] = second[p];
+            law[kept++] = law[p];
+        }
+        first.resize(kept);
+        second.resize(kept);
+        law.resize(kept);
+        own_count = own_kept;
+        finish();
+    }
 };
 
 /// What pairs a list of grains must hold.

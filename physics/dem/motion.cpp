@@ -63,6 +63,13 @@ void predict(ParticleSet& grains, double time_step) {
             field::predicted_angular_velocity);
 }
 
+void predict_half_step(ParticleSet& grains, double time_step) {
+    const double half = 0.5 * time_step;
+    predict(grains, half, field::velocity, field::acceleration, field::half_step_velocity);
+    predict(grains, half, field::angular_velocity, field::angular_acceleration,
+            field::half_step_angular_velocity);
+}
+
 double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, double kick_step, double time_step) {
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;

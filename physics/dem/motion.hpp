@@ -39,6 +39,10 @@ void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places);
 /// R. M. Lueptow, P. B. Umbanhowar, arXiv 2410.14798 (2024).
 void predict(ParticleSet& grains, double time_step);
 
+/// Velocities and angular velocities of the middle of the step, v + dt/2 a: what springs are stretched by
+/// within the step, to second order. For grains with bonds.
+void predict_half_step(ParticleSet& grains, double time_step);
+
 /// What turns a grain's sums of forces into its acceleration, made anew with the order of grains.
 struct Responses {
     std::vector<double> acceleration;          ///< of one unit of force [m s-2]; 0: the grain is held
