@@ -25,10 +25,10 @@ struct GrainSetup {
     std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
     std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
     std::vector<dem::Wall> walls;
-    std::vector<dem::BondRule> bonds;  ///< which grains are joined at the start; most often none
-    dem::Vector3<> gravity;            ///< [m s-2]
-    double time_step = 0;              ///< the same throughout [s]
-    double skin = 0;                   ///< gap up to which pairs are listed [m]; no result depends on it
+    std::vector<dem::BondRule> bonds{};  ///< which grains are joined at the start; most often none
+    dem::Vector3<> gravity;              ///< [m s-2]
+    double time_step = 0;                ///< the same throughout [s]
+    double skin = 0;                     ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };

@@ -67,8 +67,8 @@ double usual_step_of_bonds(const std::vector<dem::BondRule>& rules, const std::v
             const double r = bodies[b].least_radius;
             const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * bodies[b].material.density;
             const dem::BeamBond bond(rule.material, rule.radius_factor * r, 2 * r);
-            least = std::min(least, share * bond.stable_step(mass, 0.4 * mass * r * r,
-                                                             bonds_in_closest_packing));
+            least =
+                std::min(least, share * bond.stable_step(mass, 0.4 * mass * r * r, bonds_in_closest_packing));
         }
     return least;
 }

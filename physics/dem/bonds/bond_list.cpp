@@ -14,14 +14,23 @@ namespace {
 static_assert(bond_values == 3 + BeamBond::history_count);
 constexpr std::uint32_t nowhere = ~std::uint32_t{0};
 
-Vector3<> vector_at(const ParticleSet& grains, const Field<double>& field, std::size_t i) {
-    return {grains.data(field, 0)[i], grains.data(field, 1)[i], grains.data(field, 2)[i]};
-}
+/// A vector field of grains and copies.
+class Vectors {
+  public:
+    Vectors(const ParticleSet& grains, const Field<double>& field)
+        : components_{grains.data(field, 0), grains.data(field, 1), grains.data(field, 2)} {}
+    Vector3<> operator[](std::size_t i) const {
+        return {components_[0][i], components_[1][i], components_[2][i]};
+    }
+
+  private:
+    std::array<const double*, 3> components_;
+};
 
 /// Where the grains and copies of each id are stored.
 class Places {
   public:
-    explicit Places(const ParticleSet& grains) : grains_(grains) {
+    explicit Places(const ParticleSet& grains) : grains_(grains), positions_(grains, field::position) {
         const std::uint64_t* id = grains.data(field::copied_id);
         places_.reserve(grains.size_with_halo());
         for (std::uint32_t i = 0; i < grains.size_with_halo(); ++i) places_.push_back({id[i], i});
@@ -36,10 +45,10 @@ class Places {
     std::uint32_t nearest(std::uint64_t id, std::uint32_t i) const {
         std::uint32_t found = nowhere;
         double least = std::numeric_limits<double>::infinity();
-        const Vector3<> from = vector_at(grains_, field::position, i);
+        const Vector3<> from = positions_[i];
         for (auto at = std::lower_bound(places_.begin(), places_.end(), std::pair{id, std::uint32_t{0}});
              at != places_.end() && at->first == id; ++at) {
-            const Vector3<> r = vector_at(grains_, field::position, at->second) - from;
+            const Vector3<> r = positions_[at->second] - from;
             if (const double distance2 = dot(r, r); distance2 < least) {
                 least = distance2;
                 found = at->second;
@@ -50,6 +59,7 @@ class Places {
 
   private:
     const ParticleSet& grains_;
+    Vectors positions_;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;
 };
 
@@ -90,17 +100,17 @@ void BondList::join(const ParticleSet& grains, const ContactList& near) {
     const std::uint8_t* body = grains.data(field::body);
     const double* radius = grains.data(field::radius);
     const std::uint64_t* id = grains.data(field::copied_id);
+    const Vectors positions(grains, field::position);
     for (std::size_t p = 0; p < near.size(); ++p) {
         const std::uint32_t i = near.first[p], j = near.second[p];
         std::size_t table = 0;
         const BondRule* rule = rule_of(body[i], body[j], table);
         if (!rule) continue;
-        const double length =
-            norm(vector_at(grains, field::position, i) - vector_at(grains, field::position, j));
+        const double length = norm(positions[i] - positions[j]);
         const double smaller = std::min(radius[i], radius[j]);
         if (length - (radius[i] + radius[j]) > rule->gap * smaller) continue;
-        bonds_.push_back(bond_of(
-            {id[i], id[j], {static_cast<double>(table), length, rule->radius_factor * smaller}}));
+        bonds_.push_back(
+            bond_of({id[i], id[j], {static_cast<double>(table), length, rule->radius_factor * smaller}}));
     }
 }
 
@@ -155,19 +165,20 @@ void BondList::exclude_from(ContactList& contacts) const {
 BondFault BondList::evaluate(const Evaluation& evaluation, ParticleSet& grains) {
     BondFault fault;
     std::uint64_t* broken_of = grains.data(field::broken_bonds);
+    const Vectors velocities(grains, field::half_step_velocity),
+        spins(grains, field::half_step_angular_velocity);
     for (Bond& bond : bonds_) {
         if (bond.broken) continue;
         std::array<PlacedGrain<double>, 2> ends{placed_grain(evaluation.rows[bond.first]),
                                                 placed_grain(evaluation.rows[bond.second])};
         const std::array<std::uint32_t, 2> places{bond.first, bond.second};
         for (std::size_t e = 0; e < 2; ++e) {
-            ends[e].grain.velocity = vector_at(grains, field::half_step_velocity, places[e]);
-            ends[e].grain.angular_velocity =
-                vector_at(grains, field::half_step_angular_velocity, places[e]);
+            ends[e].grain.velocity = velocities[places[e]];
+            ends[e].grain.angular_velocity = spins[places[e]];
         }
-        const BondKinematics k = bond_kinematics(
-            ends[0].position - ends[1].position, ends[0].grain, inertia_of(ends[0].grain), ends[1].grain,
-            inertia_of(ends[1].grain), evaluation.time_step);
+        const BondKinematics k =
+            bond_kinematics(ends[0].position - ends[1].position, ends[0].grain, inertia_of(ends[0].grain),
+                            ends[1].grain, inertia_of(ends[1].grain), evaluation.time_step);
         BeamBond::History history;
         double* remembered = bond.record.history.data() + 3;
         std::copy_n(remembered, history.size(), history.begin());
@@ -181,8 +192,7 @@ BondFault BondList::evaluate(const Evaluation& evaluation, ParticleSet& grains) 
             if (places[e] >= grains.size()) continue;  // a copy
             broken_of[places[e]] += bond.broken ? 1 : 0;
             const ContactLoad<double>& l = response.load;
-            const ContactLoad<double> load =
-                e == 0 ? l : ContactLoad<double>{-l.force, -l.couple};
+            const ContactLoad<double> load = e == 0 ? l : ContactLoad<double>{-l.force, -l.couple};
             const Vector3<> normal = e == 0 ? k.normal : -k.normal;
             const Vector3<> torque = torque_about_centre(normal, 0.5 * k.length, load);
             ForceSum& sum = evaluation.sums[places[e]];
@@ -194,7 +204,8 @@ BondFault BondList::evaluate(const Evaluation& evaluation, ParticleSet& grains) 
         // A bond that breaks is let go, however long it is.
         const bool lost = !bond.broken && !(k.length <= most_stretched * bond.record.history[1]);
         if ((bearable && !lost) || fault.kind != BondFault::none) continue;
-        fault = {bearable ? BondFault::stretched : BondFault::overload, bond.record.first, bond.record.second};
+        fault = {bearable ? BondFault::stretched : BondFault::overload, bond.record.first,
+                 bond.record.second};
     }
     return fault;
 }
@@ -226,8 +237,8 @@ double BondList::stable_step(const ParticleSet& grains) const {
     const double *mass = grains.data(field::mass), *radius = grains.data(field::radius);
     double least = std::numeric_limits<double>::infinity();
     for_each_own_end([&](const Bond& bond, std::uint32_t i) {
-        least = std::min(
-            least, bond.beam.stable_step(mass[i], 0.4 * mass[i] * radius[i] * radius[i], bonds_of[i]));
+        least = std::min(least,
+                         bond.beam.stable_step(mass[i], 0.4 * mass[i] * radius[i] * radius[i], bonds_of[i]));
     });
     return least;
 }
