@@ -20,8 +20,8 @@ std::size_t history_count(const dem::AnyLawTable& laws) {
                       laws);
 }
 
-/// Force of a contact of a grain of this material pressed in by its own radius, the greatest of all partners
-/// [N].
+/// Force of a contact of a grain of this material pressed in by its own radius, or its pull if that is more,
+/// the greatest of all partners [N].
 double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, double radius, double mass) {
     dem::ContactKinematics<double> flat{};
     flat.overlap = flat.effective_radius = radius;
@@ -30,8 +30,11 @@ double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, 
     double greatest = 0;
     std::visit(
         [&](const auto& table) {
-            for (std::size_t other = 0; other < table.pairs.materials(); ++other)
-                greatest = std::max(greatest, table.pairs(material, other).elasticity(flat, 0).normal_force);
+            for (std::size_t other = 0; other < table.pairs.materials(); ++other) {
+                const auto& law = table.pairs(material, other);
+                greatest =
+                    std::max({greatest, law.elasticity(flat, 0).normal_force, law.surface_force(flat)});
+            }
         },
         laws);
     return greatest;
@@ -46,6 +49,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
       pairs_(history_count(setup_.laws)),
+      bonds_(setup_.bonds),
       clumps_(setup_.clumps, setup_.held),
       rows_halo_(comm, dem::GrainRows::width, dem::GrainRows::refreshed) {
     setup_.box = places_.aligned(setup_.box);
@@ -56,8 +60,14 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     largest_radius_ = comm_.all_max(largest_radius_);
     reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
     decomposition_.expect(grains_);
-    const double searched = std::max(2 * largest_radius_ + listed_gap(), 1.001 * clumps_.greatest_extent());
-    grid_ = std::make_unique<CellGrid>(setup_.box, searched, 1);
+    // Ranks see all that may act on their grains, and the other ends of their bonds and clumps.
+    const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
+    grid_ = std::make_unique<CellGrid>(
+        setup_.box, std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent()), 1);
+    if (bonds_.in_use())
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
+            grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
 }
 
@@ -74,22 +84,47 @@ void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
-    std::vector<const FieldInfo*> fields{&field::sliding};
-    if (history_count(setup.laws) > 3) fields.push_back(&field::rolling);
-    return fields;
+    const auto fields_of = []<class Table>(const Table&) {
+        std::vector<const FieldInfo*> fields;
+        if (Table::Law::slides) fields.push_back(&field::sliding);
+        if (Table::Law::rolls) fields.push_back(&field::rolling);
+        if (Table::Law::twists) fields.push_back(&field::twisting);
+        if (Table::Law::sticks) fields.push_back(&field::adhering);
+        return fields;
+    };
+    return std::visit(fields_of, setup.laws);
 }
 
 void GrainSimulation::start() {
     clumps_.start(grains_, places_);
     arrange({}, time_);
+    if (bonds_.in_use()) join_grains();
     evaluate(0);
     finish(0);
 }
 
-void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts) {
+void GrainSimulation::join_grains() {
+    double gap = 0;
+    for (const dem::BondRule& rule : setup_.bonds) gap = std::max(gap, rule.gap * largest_radius_);
+    dem::ContactList near(0);
+    const std::vector<std::uint8_t> one_material(setup_.material.size(), 0);
+    const dem::PairRule rule{.margin = gap,
+                             .largest_radius = largest_radius_,
+                             .material = one_material,
+                             .held = setup_.held,
+                             .materials = 1};
+    dem::list_pairs(grains_, decomposition_.table(), rule, near);
+    bonds_.join(grains_, near);
+    arrange({}, time_);
+}
+
+void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts,
+                             const ParticleSet* bonds) {
     time_ = time;
     step_ = last_balance_ = step;
-    arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_), time_);
+    if (bonds)
+        bonds_.adopt(dem::read_pairs<dem::bond_values>(comm_, *bonds, dem::BondList::fields(), grains_));
+    arrange(dem::read_pairs<dem::most_history>(comm_, contacts, history_fields(setup_), grains_), time_);
     outdated_ = true;  // how far grains have moved is not known
 }
 
@@ -110,6 +145,12 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::motion);
     rows_.predict(grains_, time_step);
     clumps_.predict(grains_, time_step, rows_);
+    if (bonds_.in_use()) {
+        dem::predict_half_step(grains_, time_step);
+        decomposition_.halo().begin(grains_,
+                                    {&field::half_step_velocity, &field::half_step_angular_velocity});
+        decomposition_.halo().finish();
+    }
     phases_.enter(Phase::halo);
     rows_halo_.begin(rows_.values());
     phases_.enter(Phase::forces);
@@ -122,6 +163,7 @@ void GrainSimulation::evaluate(double time_step) {
     rows_halo_.finish(rows_.values());
     phases_.enter(Phase::forces);
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
+    if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
     evaluated_ += pairs_.now.count + at_walls_.touches().size();
     if (!clumps_.exists()) return;
     clumps_.take_forces(grains_, sums_, units_);
@@ -141,7 +183,8 @@ void GrainSimulation::finish(double kick_step) {
     if (!std::isfinite(moved2)) refuse_not_finite();
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
-    std::array<double, 3> greatest{moved2, walls_moved ? 1.0 : 0.0, fault_.empty() ? 0.0 : 1.0};
+    std::array<double, 3> greatest{moved2, walls_moved || bonds_.broken() ? 1.0 : 0.0,
+                                   fault_.empty() ? 0.0 : 1.0};
     phases_.enter(Phase::wait);
     comm_.all_max(std::span<double>(greatest));
     moved_ = std::sqrt(greatest[0]);
@@ -163,6 +206,19 @@ void GrainSimulation::refuse_not_finite() {
             if (!std::isfinite(v[i] * v[i])) fastest = i;
     }
     fault_ += fmt::format("grain {} moves too fast to follow", grains_.data(field::id)[fastest]);
+}
+
+void GrainSimulation::refuse_bond(const dem::BondFault& found) {
+    if (found.kind == dem::BondFault::none || !fault_.empty()) return;
+    fault_ = fmt::format("step {}, time {} s: the bond between grains {} and {} ", step_, time_, found.first,
+                         found.second);
+    fault_ +=
+        found.kind == dem::BondFault::overload
+            ? "bears a force that is not finite, or that strains it by more than 1; a smaller time step?"
+            : fmt::format(
+                  "is longer than {} of its length at rest, which ranks cannot follow; a lower "
+                  "strength, so that it breaks before?",
+                  dem::most_stretched);
 }
 
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
@@ -213,6 +269,11 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
         decomposition_.rebalance(work);
     }
     dem::follow_grains(comm_, decomposition_, *grid_, grains_, records);
+    if (bonds_.in_use()) {
+        std::vector<dem::BondRecord> bonds = bonds_.records();
+        dem::follow_grains(comm_, decomposition_, *grid_, grains_, bonds);
+        bonds_.adopt(bonds);
+    }
     decomposition_.arrange(grains_, *grid_);
     const auto ids = std::as_const(grains_).own(field::id);
     std::copy(ids.begin(), ids.end(), grains_.data(field::copied_id));
@@ -235,8 +296,9 @@ void GrainSimulation::describe_grains() {
     const std::size_t own = grains_.size(), all = grains_.size_with_halo();
     std::vector<double> units(all);
     for (std::size_t i = 0; i < all; ++i)
-        units[i] =
-            dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
+        units[i] = dem::force_unit(
+            std::max(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]),
+                     dem::greatest_bond_force(setup_.bonds, radius[i])));
     rows_.reset(grains_, units, setup_.material);
     if (clumps_.exists()) units_ = units;
     sums_.assign(own + 1, {});
@@ -253,19 +315,28 @@ void GrainSimulation::describe_grains() {
 void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records, double time) {
     const std::size_t materials =
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
-    const dem::PairRule rule{.margin = listed_gap(),
-                             .largest_radius = largest_radius_,
-                             .material = setup_.material,
-                             .held = setup_.held,
-                             .materials = materials,
-                             .left_out = clumps_.inner_pairs(grains_)};
+    const auto in_clump = clumps_.inner_pairs(grains_);
+    if (bonds_.in_use())
+        if (const auto lost = bonds_.list(grains_))
+            refuse_bond({dem::BondFault::stretched, lost->front(), lost->back()});
+    const auto bonded = bonds_.pairs();
+    dem::PairRule rule{.margin = listed_gap(),
+                       .largest_radius = largest_radius_,
+                       .material = setup_.material,
+                       .held = setup_.held,
+                       .materials = materials};
+    if (in_clump || bonded)
+        rule.left_out = [&](std::uint32_t i, std::uint32_t j) {
+            return (in_clump && in_clump(i, j)) || (bonded && bonded(i, j));
+        };
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
     dem::restore_records(map, id_of, id_of, pairs_);
-    rows_halo_.choose(decomposition_.halo(), grains_.size(),
-                      dem::copies_in(pairs_, grains_.size(), grains_.halo_size()));
+    std::vector<std::uint8_t> needed = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
+    bonds_.mark_copies(grains_.size(), needed);
+    rows_halo_.choose(decomposition_.halo(), grains_.size(), needed);
     poses_ = poses_at(time);
     at_walls_.list(grains_, setup_.walls, poses_, rule);
     at_walls_.restore(records, grains_);
@@ -289,12 +360,22 @@ ParticleSet GrainSimulation::save() {
     arrange(records_of_contacts(), time_);
     outdated_ = true;
     phases_.stop();
-    return dem::saved_contacts(records_below(grains_.size()), grains_.dimension(), history_fields(setup_));
+    ParticleSet contacts = dem::empty_contacts(grains_.dimension(), history_fields(setup_));
+    dem::save_pairs(records_below(grains_.size()), history_fields(setup_), contacts);
+    return contacts;
 }
+
+ParticleSet GrainSimulation::saved_bonds() const {
+    ParticleSet bonds = dem::empty_pairs("bonds", grains_.dimension(), dem::BondList::fields());
+    dem::save_pairs(bonds_.records_below(grains_.size()), dem::BondList::fields(), bonds);
+    return bonds;
+}
+
+double GrainSimulation::stable_step_of_bonds() const { return comm_.all_min(bonds_.stable_step(grains_)); }
 
 std::uint64_t GrainSimulation::bytes_of_lists() const {
     std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    bytes += pairs_.bytes() + at_walls_.bytes() + rows_halo_.bytes();
+    bytes += pairs_.bytes() + at_walls_.bytes() + bonds_.bytes() + rows_halo_.bytes();
     bytes += clumps_.bytes() + units_.capacity() * sizeof(double);
     for (const std::vector<double>* values :
          {&responses_.acceleration, &responses_.start[0], &responses_.start[1], &responses_.start[2]})
@@ -314,7 +395,8 @@ GrainTotals GrainSimulation::totals() const {
     const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
     const std::uint8_t* body = grains_.data(field::body);
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
-    std::array<std::uint64_t, 3> counts{};  // contacts, at walls, grains that are not held
+    // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
+    std::array<std::uint64_t, 5> counts{};
     for (std::size_t i = 0; i < grains_.size(); ++i) {
         counts[2] += setup_.held[body[i]] ? 0 : 1;
         const dem::ClumpBody* clump = clumps_.of_body(body[i]);
@@ -338,22 +420,37 @@ GrainTotals GrainSimulation::totals() const {
                                    : 0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
         sums[potential].add(m[i] * potential_per_mass);
         greatest_speed2 = std::max(greatest_speed2, speed2);
+        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
     }
     std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
+    const auto sticks_at = std::visit(
+        []<class Table>(const Table&) -> std::size_t {
+            return Table::Law::sticks ? Table::Law::history_count : 0;
+        },
+        setup_.laws);
+    // Laws that act across gaps list pairs that only do that.
+    const auto is_contact = [&](double overlap, const auto& remembered) {
+        return reach_ == 0 || overlap > 0 || (sticks_at > 0 && remembered(sticks_at - 1) > 0);
+    };
     for (std::size_t k = 0; k < pairs_.now.count; ++k) {
         const std::uint32_t i = pairs_.first[pairs_.now.pair[k]], j = pairs_.second[pairs_.now.pair[k]];
-        counts[0] += i < grains_.size() ? 1 : 0;
         double distance2 = 0;
         for (std::size_t a = 0; a < 3; ++a)
             distance2 += (rows_[i][a] - rows_[j][a]) * (rows_[i][a] - rows_[j][a]);
-        greatest[1] = std::max(greatest[1], (r[i] + r[j] - std::sqrt(distance2)) / std::min(r[i], r[j]));
+        const double overlap = r[i] + r[j] - std::sqrt(distance2);
+        counts[0] +=
+            i < grains_.size() && is_contact(overlap, [&](std::size_t c) { return pairs_.now.history[c][k]; })
+                ? 1
+                : 0;
+        greatest[1] = std::max(greatest[1], overlap / std::min(r[i], r[j]));
     }
     for (const dem::WallTouch& touch : at_walls_.touches()) {
         greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
+        counts[1] += is_contact(touch.overlap, [&](std::size_t c) { return touch.history[c]; }) ? 1 : 0;
         const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
         for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
     }
-    counts[1] = at_walls_.touches().size();
+    counts[3] = bonds_.count_below(grains_.size());
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(greatest));
     comm_.all_sum(std::span<std::uint64_t>(counts));
@@ -371,6 +468,8 @@ GrainTotals GrainSimulation::totals() const {
             .grains = total_grains(),
             .contacts = counts[0],
             .wall_contacts = counts[1],
+            .bonds = counts[3],
+            .broken_bonds = counts[4] / 2,
             .wall_forces = wall_forces,
             .coordination = 2 * static_cast<double>(counts[0]) / mobile};
 }

@@ -10,6 +10,7 @@
 #include "comm/record_halo.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
+#include "physics/dem/bonds/bond_list.hpp"
 #include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
@@ -27,9 +28,10 @@ struct GrainSetup {
     std::vector<std::uint8_t> held;           ///< one a body: 1 if its grains never move
     std::vector<dem::ClumpBody> clumps = {};  ///< one a body, or none at all
     std::vector<dem::Wall> walls;
-    dem::Vector3<> gravity;  ///< [m s-2]
-    double time_step = 0;    ///< the same throughout [s]
-    double skin = 0;         ///< gap up to which pairs are listed [m]; no result depends on it
+    std::vector<dem::BondRule> bonds{};  ///< which grains are joined at the start; most often none
+    dem::Vector3<> gravity;              ///< [m s-2]
+    double time_step = 0;                ///< the same throughout [s]
+    double skin = 0;                     ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };
@@ -42,6 +44,7 @@ struct GrainTotals {
     double greatest_speed = 0;
     double greatest_overlap = 0;  ///< over the smaller radius [1]
     std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
+    std::uint64_t bonds = 0, broken_bonds = 0;
     std::vector<std::array<double, 3>>
         wall_forces;          ///< of the grains on each wall at the last evaluation [N]
     double coordination = 0;  ///< contacts with grains a grain that is not held [1]
@@ -60,11 +63,12 @@ class GrainSimulation {
     /// What contacts of the setup's law remember.
     static std::vector<const FieldInfo*> history_fields(const GrainSetup& setup);
 
-    /// First evaluation of a new run at time 0. Collective.
+    /// Joins grains and makes the first evaluation of a new run at time 0. Collective.
     void start();
-    /// Goes on from a checkpoint: the grains given to the constructor as they were read, and their contacts.
-    /// Collective.
-    void resume(double time, std::uint64_t step, const ParticleSet& contacts);
+    /// Goes on from a checkpoint: the grains given to the constructor as they were read, their contacts, and
+    /// their bonds if the setup has any. Collective.
+    void resume(double time, std::uint64_t step, const ParticleSet& contacts,
+                const ParticleSet* bonds = nullptr);
 
     /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
     /// all bounds, or a grain that was lost, left through a wall or moves no finite way. Collective.
@@ -91,6 +95,10 @@ class GrainSimulation {
     /// Brings the grains back into the box and to where they belong, as a checkpoint holds them, and returns
     /// the contacts of this rank's grains. Changes no result. Collective.
     ParticleSet save();
+    /// The bonds of this rank's grains, after save().
+    ParticleSet saved_bonds() const;
+    /// Greatest stable step under the bonds that there are [s], infinite without any. Collective.
+    double stable_step_of_bonds() const;
     /// Collective.
     GrainTotals totals() const;
 
@@ -106,6 +114,8 @@ class GrainSimulation {
     bool walls_move() const;
     void refuse_not_finite();
     void refuse_overload(const dem::Overload& overload, bool at_wall);
+    void join_grains();
+    void refuse_bond(const dem::BondFault& found);
     double listed_gap() const { return reach_ + setup_.skin; }
 
     const Communicator& comm_;
@@ -117,6 +127,7 @@ class GrainSimulation {
     double largest_radius_ = 0, reach_ = 0;
     dem::ContactList pairs_;
     dem::WallContacts at_walls_;
+    dem::BondList bonds_;
     std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
     dem::GrainRows rows_;
     dem::ClumpMotion clumps_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "physics/dem/loops/pair_loop.hpp"
-
 namespace talus::dem {
 
 double greatest_reach(const AnyLawTable& laws, double largest_radius) {
@@ -19,9 +17,11 @@ double greatest_reach(const AnyLawTable& laws, double largest_radius) {
 
 Overload evaluate_pairs(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
                         ContactList& list) {
-    const double reach = greatest_reach(laws, evaluation.largest_radius);
-    return std::visit([&](const auto& table) { return PairLoop(evaluation, table, reach, list)(which); },
-                      laws);
+    const auto loop = [&]<class Table>(const Table&) {
+        return evaluate_family<decltype(Table::Law::elasticity), decltype(Table::Law::surface_force)>(
+            evaluation, laws, which, list);
+    };
+    return std::visit(loop, laws);
 }
 
 }  // namespace talus::dem

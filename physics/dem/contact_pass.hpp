@@ -31,6 +31,11 @@ struct Overload {
 /// Greatest gap across which any pair of grains up to a radius may act [m].
 double greatest_reach(const AnyLawTable& laws, double largest_radius);
 
+/// evaluate_pairs() for laws of these two parts.
+template <class Elasticity, class SurfaceForce>
+Overload evaluate_family(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
+                         ContactList& list);
+
 /// Finds the pairs that touch and adds their forces to both sides, as far as those are own grains. A pair
 /// with a copy is computed by both ranks, with the same bits. Contacts that did not touch at the last
 /// evaluation begin anew. Pairs of own grains come first, then those with copies.

@@ -41,6 +41,15 @@ void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) 
 
 namespace {
 
+void predict(ParticleSet& grains, double time_step, const Field<double>& velocity,
+             const Field<double>& acceleration, const Field<double>& predicted) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double *v = grains.data(velocity, axis), *a = grains.data(acceleration, axis);
+        double* p = grains.data(predicted, axis);
+        for (std::size_t i = 0; i < grains.size(); ++i) p[i] = v[i] + time_step * a[i];
+    }
+}
+
 /// The components of a field to change.
 using Components = std::array<double*, 3>;
 Components components(ParticleSet& grains, const Field<double>& field) {
@@ -48,6 +57,13 @@ Components components(ParticleSet& grains, const Field<double>& field) {
 }
 
 }  // namespace
+
+void predict_half_step(ParticleSet& grains, double time_step) {
+    const double half = 0.5 * time_step;
+    predict(grains, half, field::velocity, field::acceleration, field::half_step_velocity);
+    predict(grains, half, field::angular_velocity, field::angular_acceleration,
+            field::half_step_angular_velocity);
+}
 
 double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, double kick_step, double time_step) {

@@ -34,6 +34,10 @@ class PeriodicPlaces {
 /// (1967) 98; W. C. Swope et al., J. Chem. Phys. 76 (1982) 637.
 void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places);
 
+/// Velocities and angular velocities of the middle of the step, v + dt/2 a: what springs are stretched by
+/// within the step, to second order. For grains with bonds.
+void predict_half_step(ParticleSet& grains, double time_step);
+
 /// What turns a grain's sums of forces into its acceleration, made anew with the order of grains.
 struct Responses {
     std::vector<double> acceleration;          ///< of one unit of force [m s-2]; 0: the grain is held

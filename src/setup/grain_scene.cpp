@@ -8,6 +8,7 @@
 
 #include "domain/grain_fields.hpp"
 #include "domain/random.hpp"
+#include "src/setup/bond_reader.hpp"
 #include "src/setup/clump_reader.hpp"
 #include "src/setup/grain_law_reader.hpp"
 #include "src/setup/material_reader.hpp"
@@ -172,14 +173,19 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     std::vector<dem::Wall> walls = read_walls({comm, scene, box, greatest}, laws, warnings);
     const Section table = root.section("dem"), run = root.section("run");
     const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
-    check_box(root.section("box"), box, 2 * std::max(greatest, widest) + skin);
     const OutputPlan output = read_output(root);
     const PartitionMethod partition = read_partition(run);
     const int rebalance_interval = read_rebalance_interval(run);
     const std::vector<double> gravity = table.numbers("gravity", "m s-2", 3, std::vector<double>(3, 0.0));
     laws.read_pairs();
+    const std::vector<dem::BondRule> bonds = read_bonds(root, bodies);
+    const double reach = scene.faulty() ? 0
+                                        : std::max(dem::greatest_reach(laws.table(), greatest),
+                                                   dem::greatest_bond_reach(bonds, greatest));
+    check_box(root.section("box"), box, 2 * std::max(greatest, widest) + reach + skin);
     const GrainTimeStep limit = laws.time_step(bodies);
-    const double time_step = table.number("time_step", "s", limit.usual, positive);
+    const double usual_step = std::min(limit.usual, usual_step_of_bonds(bonds, bodies));
+    const double time_step = table.number("time_step", "s", usual_step, positive);
     if (time_step > limit.greatest)
         table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}",
                                              limit.greatest, limit.reason));
@@ -191,6 +197,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
                            .held = held,
                            .clumps = clumps_of(bodies),
                            .walls = std::move(walls),
+                           .bonds = bonds,
                            .gravity = {gravity[0], gravity[1], gravity[2]},
                            .time_step = time_step,
                            .skin = skin,

@@ -13,10 +13,10 @@ double mass_of(const GrainState& grain) {
 
 dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials) {
     const dem::MaterialPairs pairs(materials);
-    return dem::LawTable<dem::HertzLaw>{
-        dem::PairTable<dem::HertzLaw<double>>(materials.size(), [&](std::size_t a, std::size_t b) {
+    return dem::LawTable<dem::HertzMindlin>{dem::PairTable<dem::LawTable<dem::HertzMindlin>::Law>(
+        materials.size(), [&](std::size_t a, std::size_t b) {
             const dem::PairProperties pair = pairs(a, b);
-            return dem::HertzLaw<double>{
+            return dem::LawTable<dem::HertzMindlin>::Law{
                 dem::hertz_mindlin(pair, dem::EndOfContact::may_attract), {pair.friction}, {}, {}, {}};
         })};
 }

@@ -96,6 +96,21 @@ TEST(SetupGrains, RefusesWhatCannotBe) {
     expect_fault("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"",
                  "[[wall]]\nname = \"floor\"\nmaterial = \"glas\"", "there is no table [materials.glas]");
     expect_fault("radius = 0.001", "radius = 0.001\nrolling_friction = 1", "rolling_friction");
+    expect_fault("gravity =", "adhesion = \"jkr\"\nend_of_contact = \"cut_at_zero\"\ngravity =",
+                 "needs end_of_contact = \"may_attract\"");
+    expect_fault("gravity =", "adhesion = \"jkr\"\nlaw = \"linear\"\nstiffness = 1e5\ngravity =",
+                 "it needs law = \"hertz\"");
+    expect_fault("gravity =", "adhesion = \"jkr\"\ngravity =", "materials.glass.work_of_adhesion (missing");
+    expect_fault("gravity =", "adhesion = \"van_der_waals\"\ngravity =", "dem.separation (missing");
+    expect_fault(
+        "gravity =", "adhesion = \"dmt\"\nfilm = \"viscous\"\ngravity =", "does not go with adhesion");
+    expect_fault(
+        "gravity =", "film = \"viscous\"\nviscosity = 1\nroughness = 1e-5\nfilm_reach = 1e-6\ngravity =",
+        "must be above the roughness");
+    expect_fault(
+        "gravity =", "film = \"viscous\"\nviscosity = 10\nroughness = 1e-5\nfilm_reach = 1e-4\ngravity =",
+        "the limit of the film between a grain of 0.001 m");
+    expect_fault("friction = 0.5", "friction = 0.5\ntwisting_friction = 0.5", "twisting_friction");
     expect_fault("[[wall]]", "[[contact]]\nmaterials = [\"glass\", \"steel\"]\n[[wall]]",
                  "no grains and no wall are of 'steel'");
     expect_fault("friction = 0.5",

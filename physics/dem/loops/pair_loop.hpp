@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <experimental/simd>
+#include <stdexcept>
 
 #include "physics/dem/contact_pass.hpp"
 
@@ -173,5 +174,17 @@ class PairLoop {
     Overload overload_;
     typename Table::LawOfLanes only_law_;
 };
+
+template <class Elasticity, class SurfaceForce>
+Overload evaluate_family(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
+                         ContactList& list) {
+    const auto loop = [&]<class Table>(const Table& table) -> Overload {
+        if constexpr (is_of_family<Elasticity, SurfaceForce, Table>)
+            return PairLoop(evaluation, table, greatest_reach(laws, evaluation.largest_radius), list)(which);
+        else
+            throw std::logic_error("a law of another family");
+    };
+    return std::visit(loop, laws);
+}
 
 }  // namespace talus::dem
