@@ -69,6 +69,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
                  &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
             grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
+    if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
 }
 
 void GrainSimulation::add_fields(ParticleSet& grains) {
@@ -81,6 +82,7 @@ void GrainSimulation::add_fields(ParticleSet& grains) {
 void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
     add_fields(grains);
     if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
+    if (setup.self_gravity) GrainGravity::add_fields(grains);
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
@@ -100,7 +102,7 @@ void GrainSimulation::start() {
     arrange({}, time_);
     if (bonds_.in_use()) join_grains();
     evaluate(0);
-    finish(0);
+    finish(0, gravity_ ? gravity_->start(grains_, *grid_, decomposition_) : dem::Impulse{});
 }
 
 void GrainSimulation::join_grains() {
@@ -130,13 +132,16 @@ void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet&
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
+    if (gravity_) gravity_->begin_step(grains_, responses_);
     dem::drift(grains_, setup_.time_step, places_);
     clumps_.drift(grains_, setup_.time_step, places_);
-    if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
+    if (outdated_ || (gravity_ && gravity_->ends_block()))
+        arrange(records_of_contacts(), time_ + setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
-    finish(setup_.time_step);
+    phases_.enter(Phase::gravity);
+    finish(setup_.time_step, gravity_ ? gravity_->end_step(grains_, *grid_, decomposition_) : dem::Impulse{});
     phases_.stop();
 }
 
@@ -172,11 +177,11 @@ void GrainSimulation::evaluate(double time_step) {
     decomposition_.halo().finish();
 }
 
-void GrainSimulation::finish(double kick_step) {
+void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
     phases_.enter(Phase::motion);
-    const double moved2 =
-        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step),
-                 clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
+    const double moved2 = std::max(
+        dem::finish_step(grains_, sums_, responses_, setup_.gravity, impulse, kick_step, setup_.time_step),
+        clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
@@ -385,15 +390,17 @@ std::uint64_t GrainSimulation::bytes_of_lists() const {
 
 void GrainSimulation::reset_counters() {
     evaluated_ = lists_ = 0;
+    if (gravity_) gravity_->reset_counts();
     phases_ = {};
 }
 
 GrainTotals GrainSimulation::totals() const {
-    enum Sum { mass, kinetic, rotational, potential, px, py, pz, sum_count };
+    enum Sum { mass, kinetic, rotational, potential, px, py, pz, lx, ly, lz, sum_count };
     std::vector<ExactSum> sums(sum_count + 3 * setup_.walls.size());
     double greatest_speed2 = 0;
     const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
     const std::uint8_t* body = grains_.data(field::body);
+    const double* attraction = gravity_ ? grains_.data(field::gravity_potential) : nullptr;
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
     // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
     std::array<std::uint64_t, 5> counts{};
@@ -403,16 +410,24 @@ GrainTotals GrainSimulation::totals() const {
         if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
         const Field<double>&centre = clump ? field::clump_centre : field::position,
               &velocity = clump ? field::clump_velocity : field::velocity;
-        double speed2 = 0, spin2 = 0, potential_per_mass = 0;
+        double speed2 = 0, spin2 = 0, potential_per_mass = attraction ? 0.5 * attraction[i] : 0;
+        std::array<double, 3> x, p;
         for (int axis = 0; axis < 3; ++axis) {
             const double v = grains_.data(velocity, axis)[i],
                          w = grains_.data(field::angular_velocity, axis)[i];
             speed2 += v * v;
             spin2 += w * w;
             const auto a = static_cast<std::size_t>(axis);
+            x[a] = grains_.data(centre, axis)[i];
+            p[a] = m[i] * v;
             if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
-                potential_per_mass -= g[a] * grains_.data(centre, axis)[i];
-            sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
+                potential_per_mass -= g[a] * x[a];
+            sums[px + a].add(p[a]);
+            sums[lx + a].add(0.4 * m[i] * r[i] * r[i] * w);
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+            sums[lx + a].add(x[b] * p[c] - x[c] * p[b]);
         }
         sums[mass].add(m[i]);
         sums[kinetic].add(0.5 * m[i] * speed2);
@@ -463,6 +478,7 @@ GrainTotals GrainSimulation::totals() const {
             .rotational_energy = sums[rotational].value(),
             .potential_energy = sums[potential].value(),
             .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
+            .angular_momentum = {sums[lx].value(), sums[ly].value(), sums[lz].value()},
             .greatest_speed = greatest[0],
             .greatest_overlap = greatest[1],
             .grains = total_grains(),
