@@ -11,6 +11,10 @@
 
 namespace talus {
 
+namespace {
+double sheared_in_a_step(const GrainSetup& setup) { return setup.box.shear_rate * setup.time_step; }
+}  // namespace
+
 std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene,
                                           std::optional<double> until) {
     if (is_grain_scene(scene)) return std::make_unique<GrainEvolution>(comm, scene, until);
@@ -69,6 +73,7 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
         throw AgreedError(exit_input_output,
                           fmt::format("{}: is of grains of {}, this scene has {}", found.file.string(),
                                       fmt::join(found.state.materials, ", "), fmt::join(wanted, ", ")));
+    check_shear(found);
     simulation_.emplace(comm_, setup_.simulation, std::move(grains));
     read_contacts_ = std::move(contacts);
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -95,7 +100,24 @@ void GrainEvolution::save(const WriteSets& write) {
     write(sets);
 }
 
-void GrainEvolution::describe(RunState& state) const { state.materials = materials(); }
+/// Where images across y stand follows from the number of steps.
+void GrainEvolution::check_shear(const ReadCheckpoint& found) const {
+    const auto stored = found.state.numbers.find("sheared_in_a_step");
+    const double then = stored == found.state.numbers.end() ? 0 : stored->second,
+                 now = sheared_in_a_step(setup_.simulation);
+    if (then != now)
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: its box was sheared by {} in a time step, that of this scene is by {}; "
+                        "neither box.shear_rate nor the time step may change",
+                        found.file.string(), then, now));
+}
+
+void GrainEvolution::describe(RunState& state) const {
+    state.materials = materials();
+    if (const double sheared = sheared_in_a_step(setup_.simulation); sheared != 0)
+        state.numbers["sheared_in_a_step"] = sheared;
+}
 
 std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;

@@ -16,25 +16,38 @@ double GranularGas::number() const { return std::pow(static_cast<double>(grains_
 
 double GranularGas::edge() const { return std::cbrt(number() / (density * volume_fraction)); }
 
-GrainSetup GranularGas::setup() const {
-    const double damping = dem::linear_damping(restitution, dem::EndOfContact::may_attract);
-    // omega^2 = k/m* (1 - damping^2/4), half a period in a contact, m* = 1/2.
+/// omega^2 = k/m* (1 - damping^2/4), half a period in a contact, m* = 1/2.
+double GranularGas::stiffness() const {
     const double frequency = std::numbers::pi / contact_time;
-    const double stiffness = 0.5 * frequency * frequency / (1 - 0.25 * damping * damping);
+    const double share = dem::linear_damping(restitution, dem::EndOfContact::may_attract);
+    return 0.5 * frequency * frequency / (1 - 0.25 * share * share);
+}
+
+double GranularGas::damping() const {
+    return dem::linear_damping(restitution, dem::EndOfContact::may_attract) * std::sqrt(0.5 * stiffness());
+}
+
+GrainSetup GranularGas::setup() const {
     const dem::GrainMaterial material{
         .name = "ball", .density = density, .restitution = restitution, .friction = friction};
     const dem::MaterialPairs pairs({material});
-    return {.box = {3, {}, {edge(), edge(), edge()}, {Boundary::periodic, Boundary::periodic, Boundary::periodic}},
-            .laws = dem::LawTable<dem::LinearLaw>{dem::PairTable<dem::LinearLaw<double>>(
-                1,
-                [&](std::size_t a, std::size_t b) {
-                    return dem::LinearLaw<double>{
-                        dem::linear_spring(pairs(a, b), stiffness, 2.0 / 7, dem::EndOfContact::may_attract),
-                        {friction},
-                        {},
-                        {},
-                        {}};
-                })},
+    return {.box = {3,
+                    {},
+                    {edge(), edge(), edge()},
+                    {Boundary::periodic, Boundary::periodic, Boundary::periodic}},
+            .laws =
+                dem::LawTable<dem::LinearLaw>{
+                    dem::PairTable<dem::LinearLaw<double>>(1,
+                                                           [&](std::size_t a, std::size_t b) {
+                                                               return dem::LinearLaw<double>{
+                                                                   dem::linear_spring(
+                                                                       pairs(a, b), stiffness(), 2.0 / 7,
+                                                                       dem::EndOfContact::may_attract),
+                                                                   {friction},
+                                                                   {},
+                                                                   {},
+                                                                   {}};
+                                                           })},
             .material = {0},
             .held = {0},
             .walls = {},
@@ -49,13 +62,13 @@ std::vector<GrainState> GranularGas::lattice() const {
     for (std::size_t k = 0; k < grains_along_edge; ++k)
         for (std::size_t j = 0; j < grains_along_edge; ++j)
             for (std::size_t i = 0; i < grains_along_edge; ++i)
-                grains.push_back({{(static_cast<double>(i) + 0.5) * spacing,
-                                   (static_cast<double>(j) + 0.5) * spacing,
-                                   (static_cast<double>(k) + 0.5) * spacing},
-                                  {},
-                                  {},
-                                  0.5,
-                                  density});
+                grains.push_back(
+                    {{(static_cast<double>(i) + 0.5) * spacing, (static_cast<double>(j) + 0.5) * spacing,
+                      (static_cast<double>(k) + 0.5) * spacing},
+                     {},
+                     {},
+                     0.5,
+                     density});
     return grains;
 }
 

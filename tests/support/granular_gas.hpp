@@ -14,14 +14,17 @@ struct GranularGas {
     double contact_time;            ///< duration of a collision
     double friction = 0;            ///< [1]
 
-    double edge() const;    ///< of the box
-    double number() const;  ///< grains
+    double edge() const;       ///< of the box
+    double number() const;     ///< grains
+    double stiffness() const;  ///< of the spring between grains
+    double damping() const;    ///< force of their dashpot over the speed of approach
     GrainSetup setup() const;
     /// At rest on the lattice.
     std::vector<GrainState> lattice() const;
 };
 
-/// Random velocities, evenly distributed in a cube, without momentum and with the mean square 3 `temperature`.
+/// Random velocities, evenly distributed in a cube, without momentum and with the mean square 3
+/// `temperature`.
 void heat(std::vector<GrainState>& grains, double temperature);
 
 }  // namespace talus::test

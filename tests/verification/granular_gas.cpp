@@ -1,3 +1,5 @@
+#include "tests/support/granular_gas.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -5,7 +7,6 @@
 #include <vector>
 
 #include "tests/support/gathered.hpp"
-#include "tests/support/granular_gas.hpp"
 
 /// A gas of smooth inelastic spheres that cools by its collisions.
 namespace talus::test {
@@ -85,9 +86,10 @@ TEST_P(HaffsLaw, Cools) {
         log_temperature.push_back(std::log(ratio));
     }
     // P. K. Haff, J. Fluid Mech. 134 (1983) 401; rate of collisions: N. F. Carnahan, K. E. Starling, J. Chem.
-    // Phys. 51 (1969) 635. Collisions that last press the spheres in, to (1 - 0.45 contact_time sqrt(pi T)) of
-    // their diameter as they count: 1.2 % of tau; the velocities' deviation from Maxwell's adds 0.3 %. One gas
-    // of 1000 grains scatters by 1.5 % in tau and by 0.02 in the exponent (twelve runs): three times that.
+    // Phys. 51 (1969) 635. Collisions that last press the spheres in, to (1 - 0.45 contact_time sqrt(pi T))
+    // of their diameter as they count: 1.2 % of tau; the velocities' deviation from Maxwell's adds 0.3 %. One
+    // gas of 1000 grains scatters by 1.5 % in tau and by 0.02 in the exponent (twelve runs): three times
+    // that.
     EXPECT_NEAR(1 / slope(found.time, root), 1.015 * tau, 0.05 * tau);
     EXPECT_NEAR(slope(log_time, log_temperature), -2, 0.06);
 }
