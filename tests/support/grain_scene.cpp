@@ -21,6 +21,19 @@ dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials) {
         })};
 }
 
+dem::AnyLawTable linear_table(const dem::GrainMaterial& material, double stiffness) {
+    const dem::MaterialPairs pairs({material});
+    return dem::LawTable<dem::LinearLaw>{
+        dem::PairTable<dem::LinearLaw<double>>(1, [&](std::size_t a, std::size_t b) {
+            return dem::LinearLaw<double>{
+                dem::linear_spring(pairs(a, b), stiffness, 2.0 / 7, dem::EndOfContact::may_attract),
+                {material.friction},
+                {},
+                {},
+                {}};
+        })};
+}
+
 GrainSetup grain_setup(const std::vector<dem::GrainMaterial>& materials, double radius, double time_step) {
     GrainSetup setup{.box = {},
                      .laws = hertz_table(materials),

@@ -28,32 +28,18 @@ double GranularGas::damping() const {
 }
 
 GrainSetup GranularGas::setup() const {
-    const dem::GrainMaterial material{
-        .name = "ball", .density = density, .restitution = restitution, .friction = friction};
-    const dem::MaterialPairs pairs({material});
-    return {.box = {3,
-                    {},
-                    {edge(), edge(), edge()},
-                    {Boundary::periodic, Boundary::periodic, Boundary::periodic}},
-            .laws =
-                dem::LawTable<dem::LinearLaw>{
-                    dem::PairTable<dem::LinearLaw<double>>(1,
-                                                           [&](std::size_t a, std::size_t b) {
-                                                               return dem::LinearLaw<double>{
-                                                                   dem::linear_spring(
-                                                                       pairs(a, b), stiffness(), 2.0 / 7,
-                                                                       dem::EndOfContact::may_attract),
-                                                                   {friction},
-                                                                   {},
-                                                                   {},
-                                                                   {}};
-                                                           })},
-            .material = {0},
-            .held = {0},
-            .walls = {},
-            .gravity = {},
-            .time_step = contact_time / steps_a_contact,
-            .skin = 0.3};
+    return {
+        .box = {3,
+                {},
+                {edge(), edge(), edge()},
+                {Boundary::periodic, Boundary::periodic, Boundary::periodic}},
+        .laws = linear_table({.name = "ball", .density = density, .restitution = restitution}, stiffness()),
+        .material = {0},
+        .held = {0},
+        .walls = {},
+        .gravity = {},
+        .time_step = contact_time / steps_a_contact,
+        .skin = 0.3};
 }
 
 std::vector<GrainState> GranularGas::lattice() const {

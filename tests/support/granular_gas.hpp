@@ -12,7 +12,6 @@ struct GranularGas {
     double volume_fraction;         ///< [1]
     double restitution;             ///< [1]
     double contact_time;            ///< duration of a collision
-    double friction = 0;            ///< [1]
 
     double edge() const;       ///< of the box
     double number() const;     ///< grains
