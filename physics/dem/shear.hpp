@@ -49,10 +49,11 @@ class Shear {
     /// Moves refreshed copies across y, and their predicted velocities, with the box they stand in.
     void move_copies(GrainRows& rows) const;
 
-    /// Square of a distance of which twice is the most that the gap of two grains can have shrunk from the list
-    /// to the end of the next step [m2]. `start`: positions at the time of the list; `listed`: greatest distance
-    /// of centres up to which pairs were listed [m].
-    double moved2(const ParticleSet& grains, const std::array<std::vector<double>, 3>& start, double listed) const;
+    /// Square of a distance of which twice is the most that the gap of two grains can have shrunk from the
+    /// list to the end of the next step [m2]. `start`: positions at the time of the list; `listed`: greatest
+    /// distance of centres up to which pairs were listed [m].
+    double moved2(const ParticleSet& grains, const std::array<std::vector<double>, 3>& start,
+                  double listed) const;
 
   private:
     double turns_of(double y) const;

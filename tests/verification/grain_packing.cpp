@@ -57,18 +57,19 @@ Bed pour(double friction) {
             return spacing * (static_cast<double>(cell) + 0.5 + 0.15 * (random.uniform(k, counter) - 0.5));
         };
         const double radius = least_radius + (greatest_radius - least_radius) * random.uniform(k, 3);
-        grains.push_back({{place(k % along, 0), place(k / along % along, 1), place(k / along / along, 2)},
-                          {random.uniform(k, 4) - 0.5, random.uniform(k, 5) - 0.5, random.uniform(k, 6) - 0.5},
-                          {},
-                          radius,
-                          density});
+        grains.push_back(
+            {{place(k % along, 0), place(k / along % along, 1), place(k / along / along, 2)},
+             {random.uniform(k, 4) - 0.5, random.uniform(k, 5) - 0.5, random.uniform(k, 6) - 0.5},
+             {},
+             radius,
+             density});
     }
     constexpr double stiffness = 4e4;  // the whole bed presses its lowest grains in by some 1e-3
     const double contact_time = std::numbers::pi / std::sqrt(2 * stiffness);
     GrainSetup setup{
         .box = {3, {}, {width, width, 0}, {Boundary::periodic, Boundary::periodic, Boundary::open}},
-        .laws = linear_table(
-            {.name = "ball", .density = density, .restitution = 0.5, .friction = friction}, stiffness),
+        .laws = linear_table({.name = "ball", .density = density, .restitution = 0.5, .friction = friction},
+                             stiffness),
         .material = {0},
         .held = {0},
         .walls = {{"floor", 0, dem::PlaneShape{{}, {0, 0, 1}}, {}}},
@@ -89,11 +90,11 @@ Bed pour(double friction) {
             totals.kinetic_energy / static_cast<double>(totals.grains), totals.greatest_overlap};
 }
 
-/// Random close packing: 0.64 (G. D. Scott, Nature 188 (1960) 908, 0.637 and, poured loosely, 0.60; J. D. Bernal, J.
-/// Mason, Nature 188 (1960) 910, 0.620 to 0.64; the maximally random jammed state, S. Torquato, T. M. Truskett, P.
-/// G. Debenedetti, Phys. Rev. Lett. 84 (2000) 2064, 0.64). Radii that differ by 6 % keep the floor from ordering
-/// the grains; they pack denser by less than 0.003. The bulk of 36 times 10 grains is a sample of some 700, whose
-/// fraction scatters by 0.003 between halves of the bed.
+/// Random close packing: 0.64 (G. D. Scott, Nature 188 (1960) 908, 0.637 and, poured loosely, 0.60; J. D.
+/// Bernal, J. Mason, Nature 188 (1960) 910, 0.620 to 0.64; the maximally random jammed state, S. Torquato, T.
+/// M. Truskett, P. G. Debenedetti, Phys. Rev. Lett. 84 (2000) 2064, 0.64). Radii that differ by 6 % keep the
+/// floor from ordering the grains; they pack denser by less than 0.003. The bulk of 36 times 10 grains is a
+/// sample of some 700, whose fraction scatters by 0.003 between halves of the bed.
 TEST(GrainPacking, DenseWithoutFrictionLooseWithIt) {
     double found[2];
     for (const double friction : {0.0, 0.5}) {
