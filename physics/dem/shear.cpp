@@ -57,7 +57,7 @@ void Shear::drift(ParticleSet& grains, double time_step, const PeriodicPlaces& p
 
 void Shear::place_velocities(const ParticleSet& grains, GrainRows& rows) const {
     const double* y = grains.data(field::position, 1);
-    double* v = rows.values().data() + GrainRows::velocity;
+    double* v = rows.values().data() + GrainRows::velocity_at;
     for (std::size_t i = 0; i < grains.size(); ++i, v += GrainRows::width)
         *v = ((*v + rounding_) - rounding_) + turns_of(y[i]) * velocity_;
 }
@@ -85,7 +85,7 @@ void Shear::move_copies(GrainRows& rows) const {
     for (const Copy& copy : copies_) {
         double* row = rows.values().data() + copy.row * GrainRows::width;
         row[0] += copy.turns * advanced;
-        row[GrainRows::velocity] += copy.turns * velocity_;
+        row[GrainRows::velocity_at] += copy.turns * velocity_;
     }
 }
 
