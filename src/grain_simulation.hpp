@@ -16,6 +16,7 @@
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
+#include "physics/dem/shear.hpp"
 #include "physics/dem/wall_contacts.hpp"
 #include "src/grain_gravity.hpp"
 #include "src/phases.hpp"
@@ -24,10 +25,11 @@ namespace talus {
 
 /// Everything that defines a run of grains besides the grains: what a scene says, resolved.
 struct GrainSetup {
-    Box box;                                  ///< three-dimensional; open or periodic along each axis
-    dem::AnyLawTable laws;                    ///< of all pairs of materials
-    std::vector<std::uint8_t> material;       ///< of each body of grains, an index into `laws`
-    std::vector<std::uint8_t> held;           ///< one a body: 1 if its grains never move
+    Box box;                             ///< three-dimensional; open or periodic along each axis; a sheared
+                                         ///< one without walls, held grains and clumps
+    dem::AnyLawTable laws;               ///< of all pairs of materials
+    std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
+    std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
     std::vector<dem::ClumpBody> clumps = {};  ///< one a body, or none at all
     std::vector<dem::Wall> walls;
     std::vector<dem::BondRule> bonds{};  ///< which grains are joined at the start; most often none
@@ -39,7 +41,8 @@ struct GrainSetup {
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };
 
-/// Totals over all grains, exact sums rounded once: the same bits on any number of ranks.
+/// Totals over all grains, exact sums rounded once: the same bits on any number of ranks. In a sheared box
+/// velocities are counted relative to the flow.
 struct GrainTotals {
     double mass = 0, kinetic_energy = 0, rotational_energy = 0;
     double potential_energy = 0;  ///< of gravity, the scene's relative to the origin [J]
@@ -136,6 +139,7 @@ class GrainSimulation {
     std::unique_ptr<CellGrid> grid_;
     std::optional<GrainGravity> gravity_;
     double largest_radius_ = 0, reach_ = 0;
+    std::optional<dem::Shear> shear_;
     dem::ContactList pairs_;
     dem::WallContacts at_walls_;
     dem::BondList bonds_;

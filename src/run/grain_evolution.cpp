@@ -25,6 +25,8 @@ std::string listed(const std::vector<std::string>& walls) {
     return walls.empty() ? "no walls" : fmt::format("the walls {}", fmt::join(walls, ", "));
 }
 
+double sheared_in_a_step(const GrainSetup& setup) { return setup.box.shear_rate * setup.time_step; }
+
 }  // namespace
 
 std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene,
@@ -109,6 +111,7 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
             fmt::format("{}: is of a scene with {}, this one has {}; what grains remember of walls goes "
                         "by their order",
                         found.file.string(), listed(found.state.walls), listed(wanted)));
+    check_shear(found);
     simulation_.emplace(comm_, setup_.simulation, std::move(grains));
     read_contacts_ = std::move(contacts);
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -149,9 +152,24 @@ std::vector<std::string> GrainEvolution::walls() const {
     return names;
 }
 
+/// Where images across y stand follows from the number of steps.
+void GrainEvolution::check_shear(const ReadCheckpoint& found) const {
+    const auto stored = found.state.numbers.find("sheared_in_a_step");
+    const double then = stored == found.state.numbers.end() ? 0 : stored->second,
+                 now = sheared_in_a_step(setup_.simulation);
+    if (then != now)
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: its box was sheared by {} in a time step, that of this scene is by {}; "
+                        "neither box.shear_rate nor the time step may change",
+                        found.file.string(), then, now));
+}
+
 void GrainEvolution::describe(RunState& state) const {
     state.materials = materials();
     state.walls = walls();
+    if (const double sheared = sheared_in_a_step(setup_.simulation); sheared != 0)
+        state.numbers["sheared_in_a_step"] = sheared;
 }
 
 std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {

@@ -48,6 +48,7 @@ class GrainEvolution : public Evolution {
 
   private:
     std::vector<std::string> materials() const;
+    void check_shear(const ReadCheckpoint& found) const;
     bool has_bonds() const { return !setup_.simulation.bonds.empty(); }
     std::vector<std::string> walls() const;
 

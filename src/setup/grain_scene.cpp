@@ -189,6 +189,20 @@ void refuse_with_clumps(const Section& root, const std::vector<GrainBody>& bodie
     }
 }
 
+/// The key shear_rate of [box].
+void read_shear(const Section& table, const std::vector<GrainBody>& bodies, bool has_walls, Box& box) {
+    if (!table.has("shear_rate")) return;
+    box.shear_rate = table.number("shear_rate", "s-1");
+    if (std::any_of(box.boundary.begin(), box.boundary.end(),
+                    [](Boundary b) { return b != Boundary::periodic; }))
+        table.error("shear_rate", "only a box that is periodic along all axes can be sheared");
+    if (has_walls) table.error("shear_rate", "a sheared box holds no walls");
+    for (const GrainBody& body : bodies)
+        if (body.held || body.clump)
+            table.error("shear_rate", fmt::format("a sheared box holds no {}, as '{}'",
+                                                  body.held ? "grains that are held" : "clumps", body.name));
+}
+
 }  // namespace
 
 bool is_grain_scene(const Scene& scene) { return scene.root().has("grains"); }
@@ -198,7 +212,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     const std::string title = root.text("title", scene.file().stem().string());
     const auto seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
     root.integer("dimension", 3, 3, 3);
-    const Box box = read_box(root.section("box"), 3);
+    Box box = read_box(root.section("box"), 3);
     GrainLawReader laws(root);
     std::vector<std::uint8_t> material, held;
     std::vector<GrainBody> bodies = read_bodies(comm, scene, box, laws, material, seed);
@@ -210,6 +224,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     }
     std::vector<std::string> warnings;
     std::vector<dem::Wall> walls = read_walls({comm, scene, box, greatest}, laws, warnings);
+    read_shear(root.section("box"), bodies, !walls.empty(), box);
     const Section table = root.section("dem"), run = root.section("run");
     const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
     const bool shrinks = table.choice("overlaps", {"refused", "shrink"}, "refused") == "shrink";
@@ -221,6 +236,8 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     refuse_with_clumps(root, bodies, self_gravity.has_value(), shrinks);
     laws.read_pairs();
     const std::vector<dem::BondRule> bonds = read_bonds(root, bodies);
+    if (box.shear_rate != 0 && !bonds.empty())
+        root.section("box").error("shear_rate", "a sheared box holds no grains with bonds");
     const double reach = scene.faulty() ? 0
                                         : std::max(dem::greatest_reach(laws.table(), greatest),
                                                    dem::greatest_bond_reach(bonds, greatest));
@@ -362,6 +379,7 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
                 grains.data(field::velocity, axis)[i] = row[4 + a];
                 grains.data(field::angular_velocity, axis)[i] = row[7 + a];
             }
+            grains.data(field::velocity, 0)[i] += dem::shear_flow(scene.simulation.box, row[1]);
             grains.data(field::radius)[i] = row[3];
             grains.data(field::mass)[i] =
                 4.0 / 3.0 * std::numbers::pi * row[3] * row[3] * row[3] * body.material.density;
