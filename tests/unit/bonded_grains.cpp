@@ -31,7 +31,8 @@ struct Beam {
 
     /// Along x from the held grain 0; the tip has half the mass, as the end of a beam that is cut into pieces
     /// around its nodes.
-    explicit Beam(int bond_count, const Vector3<>& gravity = {}) : bonds(bond_count), setup(grain_setup({soft, soft}, 0.5 * spacing(), 1)) {
+    explicit Beam(int bond_count, const Vector3<>& gravity = {})
+        : bonds(bond_count), setup(grain_setup({soft, soft}, 0.5 * spacing(), 1)) {
         const double r = spacing() / 2;
         const dem::BeamBond bond(plastic, section_radius, spacing());
         const double m = 0.5 * mass();
@@ -104,8 +105,8 @@ double leapfrog_period(double omega, double time_step) {
 }
 
 // A row of n springs k and masses m, one end fixed, the other of half the mass: 2 sqrt(k/m) sin(pi/(4n)) with
-// sin(pi i/(2n)) at place i. Bonds are such springs for stretching and for twisting; 1e-5 is left to the zeros
-// and to what twisted balls swing sideways.
+// sin(pi i/(2n)) at place i. Bonds are such springs for stretching and for twisting; 1e-5 is left to the
+// zeros and to what twisted balls swing sideways.
 TEST(BondedGrains, StretchingAndTwistingSwingAsARowOfSprings) {
     const Communicator comm(MPI_COMM_SELF);
     for (const bool twisting : {false, true}) {
@@ -138,8 +139,7 @@ TEST(BondedGrains, CantileverSwingsAtItsFirstFrequency) {
         const double k = 1.87510407 / length, sigma = 0.73409551;
         for (GrainState& grain : beam.grains) {
             const double kx = k * grain.position.x;
-            grain.velocity.z =
-                0.01 * (std::cosh(kx) - std::cos(kx) - sigma * (std::sinh(kx) - std::sin(kx)));
+            grain.velocity.z = 0.01 * (std::cosh(kx) - std::cos(kx) - sigma * (std::sinh(kx) - std::sin(kx)));
             grain.angular_velocity.y =
                 -0.01 * k * (std::sinh(kx) + std::sin(kx) - sigma * (std::cosh(kx) - std::cos(kx)));
         }
@@ -162,11 +162,8 @@ TEST(BondedGrains, RigidRotationStrainsNoBond) {
     std::vector<GrainState> cube;
     const double d = beam.spacing();
     for (int k = 0; k < 27; ++k) {
-        GrainState grain{{d * (k % 3 - 1), d * (k / 3 % 3 - 1), d * (k / 9 - 1)},
-                         {},
-                         spin,
-                         d / 2,
-                         beam.grains[1].density};
+        GrainState grain{
+            {d * (k % 3 - 1), d * (k / 3 % 3 - 1), d * (k / 9 - 1)}, {}, spin, d / 2, beam.grains[1].density};
         grain.velocity = cross(spin, grain.position);
         cube.push_back(grain);
     }
@@ -181,8 +178,7 @@ TEST(BondedGrains, RigidRotationStrainsNoBond) {
     EXPECT_NEAR(after / before, 1, 1e-3);
     run.save();
     const ParticleSet bonds = run.saved_bonds();
-    const double strained =
-        3 * beam.mass() * dot(spin, spin) * d / (8 * E * second_moment / (d * d * d));
+    const double strained = 3 * beam.mass() * dot(spin, spin) * d / (8 * E * second_moment / (d * d * d));
     double shear = 0, angle = 0;
     for (std::size_t k = 0; k < bonds.size(); ++k) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -196,8 +192,8 @@ TEST(BondedGrains, RigidRotationStrainsNoBond) {
 }
 
 /// Two grains that touch, bonded.
-GrainSimulation pair_of(const Communicator& comm, const dem::BondMaterial& material, const Vector3<>& velocity,
-                        const Vector3<>& spin) {
+GrainSimulation pair_of(const Communicator& comm, const dem::BondMaterial& material,
+                        const Vector3<>& velocity, const Vector3<>& spin) {
     const double r = 2e-3;
     const GrainState one{{-r, 0, 0}, velocity, spin, r, density};
     GrainState other = one;
