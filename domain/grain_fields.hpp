@@ -7,13 +7,6 @@ namespace talus::field {
 
 inline constexpr Field<double> angular_acceleration{
     "angular_acceleration", "rad s-2", vector, state, owner, "angular acceleration at the last evaluation"};
-inline constexpr Field<double> predicted_angular_velocity{
-    "predicted_angular_velocity",
-    "rad s-1",
-    vector,
-    work,
-    halo,
-    "angular velocity predicted to the time of evaluation"};
 inline constexpr Field<std::uint64_t> copied_id{"copied_id", "1",  scalar,
                                                 work,        halo, "the id, for copies to have it too"};
 inline constexpr Field<std::uint64_t> first_id{

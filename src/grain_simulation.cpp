@@ -8,6 +8,7 @@
 
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
+#include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
 
 namespace talus {
@@ -48,7 +49,9 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
       pairs_(history_count(setup_.laws)),
-      bonds_(setup_.bonds) {
+      bonds_(setup_.bonds),
+      clumps_(setup_.clumps, setup_.held),
+      rows_halo_(comm, dem::GrainRows::width, dem::GrainRows::refreshed) {
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
@@ -59,19 +62,26 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     decomposition_.expect(grains_);
     // Ranks see all that may act on their grains, and the other ends of their bonds.
     const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
-    grid_ = std::make_unique<CellGrid>(setup_.box, 2 * largest_radius_ + seen + setup_.skin, 1);
-    if (bonds_.in_use())
-        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-                 &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
-            grains_.add(*info);
+    const double searched =
+        std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent());
+    add_fields(grains_, setup_);
+    grid_ = std::make_unique<CellGrid>(setup_.box, searched, 1);
     decomposition_.divide(grains_, *grid_);
 }
 
 void GrainSimulation::add_fields(ParticleSet& grains) {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::angular_velocity, &field::acceleration, &field::angular_acceleration,
-             &field::radius, &field::mass, &field::body, &field::predicted_velocity,
-             &field::predicted_angular_velocity, &field::copied_id})
+             &field::radius, &field::mass, &field::body, &field::copied_id})
+        grains.add(*info);
+}
+
+void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
+    add_fields(grains);
+    if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
+    if (setup.bonds.empty()) return;
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
         grains.add(*info);
 }
 
@@ -88,9 +98,9 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 }
 
 void GrainSimulation::start() {
+    clumps_.start(grains_, places_);
     arrange({}, time_);
     if (bonds_.in_use()) join_grains();
-    predict(0);
     evaluate(0);
     finish(0);
 }
@@ -99,8 +109,12 @@ void GrainSimulation::join_grains() {
     double gap = 0;
     for (const dem::BondRule& rule : setup_.bonds) gap = std::max(gap, rule.gap * largest_radius_);
     dem::ContactList near(0);
-    const std::vector<std::uint8_t> one_material(setup_.material.size(), 0);
-    dem::list_pairs(grains_, decomposition_.table(), {gap, one_material, setup_.held, 1}, near);
+    const dem::PairRule rule{.margin = gap,
+                             .largest_radius = largest_radius_,
+                             .material = setup_.material,
+                             .held = setup_.held,
+                             .materials = 1};
+    dem::list_pairs(grains_, decomposition_.table(), rule, near);
     bonds_.join(grains_, near);
     arrange({}, time_);
 }
@@ -118,8 +132,8 @@ void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet&
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
     dem::drift(grains_, setup_.time_step, places_);
+    clumps_.drift(grains_, setup_.time_step, places_);
     if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
-    predict(setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
@@ -127,54 +141,56 @@ void GrainSimulation::step() {
     phases_.stop();
 }
 
-void GrainSimulation::predict(double time_step) {
-    dem::predict(grains_, time_step);
-    if (bonds_.in_use()) dem::predict_half_step(grains_, time_step);
-}
-
 /// Forces and torques of all contacts, those of own grains while copies are on their way.
 void GrainSimulation::evaluate(double time_step) {
+    phases_.enter(Phase::motion);
+    rows_.predict(grains_, time_step);
+    clumps_.predict(grains_, time_step, rows_);
     phases_.enter(Phase::halo);
-    Halo& halo = decomposition_.halo();
-    if (bonds_.in_use())
-        halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity,
-                             &field::half_step_velocity, &field::half_step_angular_velocity});
-    else
-        halo.begin(grains_,
-                   {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
+    if (bonds_.in_use()) {
+        dem::predict_half_step(grains_, time_step);
+        decomposition_.halo().begin(grains_,
+                                    {&field::half_step_velocity, &field::half_step_angular_velocity});
+        decomposition_.halo().finish();
+    }
+    rows_halo_.begin(rows_.values());
     phases_.enter(Phase::forces);
-    const std::size_t own = grains_.size();
-    rows_.update(grains_, 0, own);
-    sums_.assign(own, {});
-    const dem::Evaluation evaluation{rows_, time_step, static_cast<std::uint32_t>(step_) + 1, sums_,
-                                     largest_radius_};
+    const double approach = 2 * moved_ + 0.001 * setup_.skin;  // and what rounding may add
+    const dem::Evaluation evaluation{rows_, time_step, approach, sums_, largest_radius_};
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
     poses_ = poses_at(time_ + time_step);
     refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
-    halo.finish();
+    rows_halo_.finish(rows_.values());
     phases_.enter(Phase::forces);
-    rows_.update(grains_, own, grains_.size_with_halo());
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
     if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
-    evaluated_ += pairs_.touching_count + at_walls_.touches().size();
+    evaluated_ += pairs_.now.count + at_walls_.touches().size();
+    if (!clumps_.exists()) return;
+    clumps_.take_forces(grains_, sums_, units_);
+    phases_.enter(Phase::halo);
+    decomposition_.halo().begin(grains_, {&field::sphere_force, &field::sphere_torque});
+    decomposition_.halo().finish();
 }
 
 void GrainSimulation::finish(double kick_step) {
     phases_.enter(Phase::motion);
     const double moved2 =
-        dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step);
+        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step),
+                 clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
     if (!std::isfinite(moved2)) refuse_not_finite();
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
-    std::array<int, 2> flags{walls_moved || bonds_.broken() || moved2 > allowed * allowed, !fault_.empty()};
+    const bool changed = walls_moved || bonds_.broken();
+    std::array<double, 3> greatest{moved2, changed ? 1.0 : 0.0, fault_.empty() ? 0.0 : 1.0};
     phases_.enter(Phase::wait);
-    comm_.all_max(std::span<int>(flags));
-    outdated_ = flags[0] > 0;
-    if (flags[1] > 0) comm_.all_agree(1, fault_);
+    comm_.all_max(std::span<double>(greatest));
+    moved_ = std::sqrt(greatest[0]);
+    outdated_ = moved_ > allowed || greatest[1] > 0;
+    if (greatest[2] > 0) comm_.all_agree(1, fault_);
 }
 
 void GrainSimulation::refuse_not_finite() {
@@ -209,9 +225,8 @@ void GrainSimulation::refuse_bond(const dem::BondFault& found) {
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
     if (!overload.found || !fault_.empty()) return;
     const std::uint64_t* id = grains_.data(field::copied_id);
-    const std::string place = fmt::format(
-        "({:.6g}, {:.6g}, {:.6g}) m", grains_.data(field::position, 0)[overload.first],
-        grains_.data(field::position, 1)[overload.first], grains_.data(field::position, 2)[overload.first]);
+    const double* row = rows_[overload.first];
+    const std::string place = fmt::format("({:.6g}, {:.6g}, {:.6g}) m", row[0], row[1], row[2]);
     const std::string when = fmt::format("step {}, time {} s: ", step_, time_);
     if (overload.behind) {
         fault_ = when + fmt::format("grain {} at {} has left through wall '{}'", id[overload.first], place,
@@ -268,6 +283,10 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
     halo.finish();
     describe_grains();
     list_contacts(records, time);
+    if (const std::uint64_t alone = clumps_.find_spheres(grains_);
+        alone != dem::ClumpMotion::everybody && fault_.empty())
+        fault_ = fmt::format("step {}, time {} s: the clump of grain {} is torn apart", step_, time_, alone);
+    moved_ = 0;
     ++lists_;
 }
 
@@ -281,35 +300,48 @@ void GrainSimulation::describe_grains() {
         units[i] = dem::force_unit(
             std::max(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]),
                      dem::greatest_bond_force(setup_.bonds, radius[i])));
-    rows_.reset(grains_, units);
+    rows_.reset(grains_, units, setup_.material);
+    if (clumps_.exists()) units_ = units;
+    sums_.assign(own + 1, {});
     responses_.acceleration.resize(own);
-    responses_.angular.resize(own);
-    for (std::size_t i = 0; i < own; ++i) {
-        const double mobile = setup_.held[body[i]] ? 0.0 : 1.0;
-        responses_.acceleration[i] = mobile * units[i] / mass[i];
-        responses_.angular[i] = mobile * units[i] * radius[i] / (0.4 * mass[i] * radius[i] * radius[i]);
-    }
+    for (std::size_t i = 0; i < own; ++i)
+        responses_.acceleration[i] =
+            setup_.held[body[i]] || clumps_.of_body(body[i]) ? 0.0 : units[i] / mass[i];
     for (int axis = 0; axis < 3; ++axis) {
         const auto x = std::as_const(grains_).own(field::position, axis);
         responses_.start[static_cast<std::size_t>(axis)].assign(x.begin(), x.end());
     }
 }
 
+/// The pairs that have no contact: spheres of a clump, ends of a bond.
+std::function<bool(std::uint32_t, std::uint32_t)> GrainSimulation::pairs_left_out() const {
+    auto inner = clumps_.inner_pairs(grains_);
+    if (!bonds_.in_use()) return inner;
+    return [this, inner](std::uint32_t i, std::uint32_t j) {
+        return bonds_.joins(i, j) || (inner && inner(i, j));
+    };
+}
+
 void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records, double time) {
     const std::size_t materials =
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
-    const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
-    dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
-    if (bonds_.in_use()) {
+    if (bonds_.in_use())
         if (const auto lost = bonds_.list(grains_))
             refuse_bond({dem::BondFault::stretched, lost->front(), lost->back()});
-        bonds_.exclude_from(pairs_);
-    }
+    const dem::PairRule rule{.margin = listed_gap(),
+                             .largest_radius = largest_radius_,
+                             .material = setup_.material,
+                             .held = setup_.held,
+                             .materials = materials,
+                             .left_out = pairs_left_out()};
+    dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
-    const auto now = static_cast<std::uint32_t>(step_) + 1;
-    dem::restore_records(map, now, id_of, id_of, pairs_);
+    dem::restore_records(map, id_of, id_of, pairs_);
+    std::vector<std::uint8_t> copies = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
+    bonds_.mark_copies(grains_.size(), copies);
+    rows_halo_.choose(decomposition_.halo(), grains_.size(), copies);
     poses_ = poses_at(time);
     at_walls_.list(grains_, setup_.walls, poses_, rule);
     at_walls_.restore(records, grains_);
@@ -348,10 +380,10 @@ double GrainSimulation::stable_step_of_bonds() const { return comm_.all_min(bond
 
 std::uint64_t GrainSimulation::bytes_of_lists() const {
     std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    bytes += pairs_.bytes() + at_walls_.bytes() + bonds_.bytes();
+    bytes += pairs_.bytes() + at_walls_.bytes() + bonds_.bytes() + rows_halo_.bytes();
+    bytes += clumps_.bytes() + units_.capacity() * sizeof(double);
     for (const std::vector<double>* values :
-         {&responses_.acceleration, &responses_.angular, &responses_.start[0], &responses_.start[1],
-          &responses_.start[2]})
+         {&responses_.acceleration, &responses_.start[0], &responses_.start[1], &responses_.start[2]})
         bytes += values->capacity() * sizeof(double);
     return bytes;
 }
@@ -371,24 +403,29 @@ GrainTotals GrainSimulation::totals() const {
     // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
     std::array<std::uint64_t, 5> counts{};
     for (std::size_t i = 0; i < grains_.size(); ++i) {
+        counts[2] += setup_.held[body[i]] ? 0 : 1;
+        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
+        const dem::ClumpBody* clump = clumps_.of_body(body[i]);
+        if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
+        const Field<double>&centre = clump ? field::clump_centre : field::position,
+              &velocity = clump ? field::clump_velocity : field::velocity;
         double speed2 = 0, spin2 = 0, potential_per_mass = 0;
         for (int axis = 0; axis < 3; ++axis) {
-            const double v = grains_.data(field::velocity, axis)[i],
+            const double v = grains_.data(velocity, axis)[i],
                          w = grains_.data(field::angular_velocity, axis)[i];
             speed2 += v * v;
             spin2 += w * w;
             const auto a = static_cast<std::size_t>(axis);
             if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
-                potential_per_mass -= g[a] * grains_.data(field::position, axis)[i];
+                potential_per_mass -= g[a] * grains_.data(centre, axis)[i];
             sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
         }
         sums[mass].add(m[i]);
         sums[kinetic].add(0.5 * m[i] * speed2);
-        sums[rotational].add(0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
+        sums[rotational].add(clump ? clumps_.rotational_energy(grains_, i)
+                                   : 0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
         sums[potential].add(m[i] * potential_per_mass);
         greatest_speed2 = std::max(greatest_speed2, speed2);
-        counts[2] += setup_.held[body[i]] ? 0 : 1;
-        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
     }
     std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
     const auto sticks_at = std::visit(
@@ -397,24 +434,21 @@ GrainTotals GrainSimulation::totals() const {
         },
         setup_.laws);
     // Laws that act across gaps list pairs that only do that.
-    const auto is_contact = [&](double overlap, const double* remembered) {
-        return reach_ == 0 || overlap > 0 || (sticks_at > 0 && remembered[sticks_at - 1] > 0);
-    };
-    for (std::size_t k = 0; k < pairs_.touching_count; ++k) {
-        const std::uint32_t i = pairs_.first[pairs_.touching[k]], j = pairs_.second[pairs_.touching[k]];
+    const auto is_contact = [&](double overlap, bool sticks) { return reach_ == 0 || overlap > 0 || sticks; };
+    for (std::size_t k = 0; k < pairs_.now.count; ++k) {
+        const std::uint32_t i = pairs_.first[pairs_.now.pair[k]], j = pairs_.second[pairs_.now.pair[k]];
         double distance2 = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double* x = grains_.data(field::position, axis);
-            distance2 += (x[i] - x[j]) * (x[i] - x[j]);
-        }
+        for (std::size_t a = 0; a < 3; ++a)
+            distance2 += (rows_[i][a] - rows_[j][a]) * (rows_[i][a] - rows_[j][a]);
         const double overlap = r[i] + r[j] - std::sqrt(distance2);
-        const double* remembered = pairs_.history.data() + pairs_.touching[k] * pairs_.history_count;
-        counts[0] += i < grains_.size() && is_contact(overlap, remembered) ? 1 : 0;
+        const bool sticks = sticks_at > 0 && pairs_.now.history[sticks_at - 1][k] > 0;
+        counts[0] += i < grains_.size() && is_contact(overlap, sticks) ? 1 : 0;
         greatest[1] = std::max(greatest[1], overlap / std::min(r[i], r[j]));
     }
     for (const dem::WallTouch& touch : at_walls_.touches()) {
         greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
-        counts[1] += is_contact(touch.overlap, touch.history.data()) ? 1 : 0;
+        const bool sticks = sticks_at > 0 && touch.history[sticks_at - 1] > 0;
+        counts[1] += is_contact(touch.overlap, sticks) ? 1 : 0;
         const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
         for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
     }

@@ -1,15 +1,18 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "comm/communicator.hpp"
 #include "comm/decomposition.hpp"
+#include "comm/record_halo.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
 #include "physics/dem/bonds/bond_list.hpp"
+#include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
@@ -20,15 +23,16 @@ namespace talus {
 
 /// Everything that defines a run of grains besides the grains: what a scene says, resolved.
 struct GrainSetup {
-    Box box;                             ///< three-dimensional; open or periodic along each axis
-    dem::AnyLawTable laws;               ///< of all pairs of materials
-    std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
-    std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
+    Box box;                                  ///< three-dimensional; open or periodic along each axis
+    dem::AnyLawTable laws;                    ///< of all pairs of materials
+    std::vector<std::uint8_t> material;       ///< of each body of grains, an index into `laws`
+    std::vector<std::uint8_t> held;           ///< one a body: 1 if its grains never move
+    std::vector<dem::ClumpBody> clumps = {};  ///< one a body, or none at all
     std::vector<dem::Wall> walls;
-    std::vector<dem::BondRule> bonds{};  ///< which grains are joined at the start; most often none
-    dem::Vector3<> gravity;              ///< [m s-2]
-    double time_step = 0;                ///< the same throughout [s]
-    double skin = 0;                     ///< gap up to which pairs are listed [m]; no result depends on it
+    std::vector<dem::BondRule> bonds = {};  ///< which grains are joined at the start; most often none
+    dem::Vector3<> gravity;                 ///< [m s-2]
+    double time_step = 0;                   ///< the same throughout [s]
+    double skin = 0;                        ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };
@@ -55,6 +59,8 @@ class GrainSimulation {
     GrainSimulation(const Communicator& comm, GrainSetup setup, ParticleSet grains);
 
     static void add_fields(ParticleSet& grains);
+    /// The same and what the setup asks for besides.
+    static void add_fields(ParticleSet& grains, const GrainSetup& setup);
     /// What contacts of the setup's law remember.
     static std::vector<const FieldInfo*> history_fields(const GrainSetup& setup);
 
@@ -74,6 +80,7 @@ class GrainSimulation {
     std::uint64_t step_count() const { return step_; }
     const ParticleSet& grains() const { return grains_; }
     const GrainSetup& setup() const { return setup_; }
+    const dem::ClumpMotion& clumps() const { return clumps_; }
     const Communicator& comm() const { return comm_; }
     const Decomposition& decomposition() const { return decomposition_; }
     std::uint64_t total_grains() const { return decomposition_.total_particles(); }
@@ -102,7 +109,6 @@ class GrainSimulation {
     std::vector<dem::ContactRecord> records_below(std::size_t end) const;
     void describe_grains();
     void list_contacts(const std::vector<dem::ContactRecord>& records, double time);
-    void predict(double time_step);
     void evaluate(double time_step);
     void finish(double kick_step);
     std::vector<dem::WallPose> poses_at(double time) const;
@@ -111,6 +117,7 @@ class GrainSimulation {
     void refuse_overload(const dem::Overload& overload, bool at_wall);
     void join_grains();
     void refuse_bond(const dem::BondFault& found);
+    std::function<bool(std::uint32_t, std::uint32_t)> pairs_left_out() const;
     double listed_gap() const { return reach_ + setup_.skin; }
 
     const Communicator& comm_;
@@ -125,11 +132,15 @@ class GrainSimulation {
     dem::BondList bonds_;
     std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
     dem::GrainRows rows_;
+    dem::ClumpMotion clumps_;
+    RecordHalo rows_halo_;
     dem::Responses responses_;
+    std::vector<double> units_;  ///< of force of each grain and copy, if there are clumps [N]
     std::vector<dem::ForceSum> sums_;
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;
+    double moved_ = 0;  ///< no grain of any rank has moved farther since the last list [m]
     std::string fault_;
     std::uint64_t evaluated_ = 0, lists_ = 0;
     Phases phases_;

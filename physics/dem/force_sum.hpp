@@ -8,7 +8,7 @@ namespace talus::dem {
 
 /// Forces and torques on a grain, added up in whole numbers of a unit of its own, so that the order of
 /// contacts does not matter. A force on a pair is cut towards zero: exactly opposite on grains of one unit.
-struct alignas(64) ForceSum {
+struct alignas(16) ForceSum {
     std::int64_t force[3], torque[3];
 };
 

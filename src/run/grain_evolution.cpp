@@ -56,11 +56,10 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
                                     const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
     ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
-    ParticleSet grains = empty_grains();
+    ParticleSet grains = empty_grains(setup_.simulation);
     ParticleSet contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.simulation));
     std::vector<ParticleSet*> sets{&grains, &contacts};
     if (has_bonds()) {
-        grains.add(field::broken_bonds);
         read_bonds_ = dem::empty_pairs("bonds", 3, dem::BondList::fields());
         sets.push_back(&*read_bonds_);
     }

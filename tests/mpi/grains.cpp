@@ -121,13 +121,40 @@ GrainSetup in_a_drum() {
     return setup;
 }
 
+/// The first, with clumps of three spheres of two sizes in place of spheres.
+GrainSetup clumps_on_a_floor() {
+    GrainSetup setup = on_a_floor();
+    const std::vector<dem::Vector3<>> centres{{-0.0024, 0, 0}, {0.0024, 0.0005, 0}, {0, 0.0024, 0.001}};
+    const std::vector<double> radii{0.0031, 0.0031, 0.0026};
+    setup.clumps = {{std::make_shared<const dem::ClumpShape>(dem::clump_shape(centres, radii, 64)), 0, 2500}};
+    return setup;
+}
+
+ParticleSet spheres(const Communicator& comm, const GrainSetup&) { return grain_set(comm, cloud()); }
+
+ParticleSet clumps(const Communicator& comm, const GrainSetup& setup) {
+    std::vector<dem::ClumpState> states;
+    for (const GrainState& grain : cloud()) {
+        const double half = norm(grain.position) * 400;
+        states.push_back({grain.position,
+                          grain.velocity,
+                          {std::cos(half), {0, 0.8 * std::sin(half), 0.6 * std::sin(half)}},
+                          1e-10 * grain.angular_velocity});
+    }
+    return clump_set(comm, setup, states);
+}
+
 std::uint64_t hash_of(const Communicator& comm, GrainSimulation& run) {
     const ParticleSet contacts = run.save();
     const std::uint64_t hash = state_hash(comm, run.grains()) * 31 + state_hash(comm, contacts);
     return run.setup().bonds.empty() ? hash : hash * 31 + state_hash(comm, run.saved_bonds());
 }
 
-using MakeSetup = GrainSetup (*)();
+struct Tested {
+    const char* name;
+    GrainSetup (*setup)();
+    ParticleSet (*grains)(const Communicator&, const GrainSetup&);
+};
 
 struct How {
     PartitionMethod partition = PartitionMethod::metis;
@@ -135,22 +162,26 @@ struct How {
     double skin = 0.0005;
 };
 
-GrainSimulation prepared(const Communicator& comm, MakeSetup make_setup, const How& how, ParticleSet grains) {
-    GrainSetup setup = make_setup();
+GrainSimulation prepared(const Communicator& comm, GrainSetup setup, const How& how, ParticleSet grains) {
     setup.partition = how.partition;
     setup.rebalance_interval = how.rebalance_interval;
     setup.skin = how.skin;
     return {comm, setup, std::move(grains)};
 }
 
-std::uint64_t hash_after(const Communicator& comm, MakeSetup make_setup, const How& how) {
-    GrainSimulation run = prepared(comm, make_setup, how, grain_set(comm, cloud()));
+GrainSimulation prepared(const Communicator& comm, const Tested& tested, const How& how) {
+    const GrainSetup setup = tested.setup();
+    return prepared(comm, setup, how, tested.grains(comm, setup));
+}
+
+std::uint64_t hash_after(const Communicator& comm, const Tested& tested, const How& how) {
+    GrainSimulation run = prepared(comm, tested, how);
     run.start();
     for (int k = 0; k < steps; ++k) run.step();
     return hash_of(comm, run);
 }
 
-class GrainsSameBits : public testing::TestWithParam<MakeSetup> {
+class GrainsSameBits : public testing::TestWithParam<Tested> {
   protected:
     void SetUp() override {
         const Communicator alone(MPI_COMM_SELF);
@@ -161,7 +192,7 @@ class GrainsSameBits : public testing::TestWithParam<MakeSetup> {
 
 TEST_P(GrainsSameBits, RunDoesSomething) {
     const Communicator alone(MPI_COMM_SELF);
-    GrainSimulation run = prepared(alone, GetParam(), {}, grain_set(alone, cloud()));
+    GrainSimulation run = prepared(alone, GetParam(), {});
     run.start();
     std::vector<bool> pressed(run.setup().walls.size());
     for (int k = 0; k < steps; ++k) {
@@ -185,7 +216,7 @@ TEST_P(GrainsSameBits, WhoeverOwnsWhat) {
     constexpr How hows[] = {{PartitionMethod::metis, 1, 0.0005},    {PartitionMethod::metis, 0, 0.0002},
                             {PartitionMethod::cheapest, 1, 0.0005}, {PartitionMethod::bisection, 1, 0.001},
                             {PartitionMethod::slabs, 0, 0.0005},    {PartitionMethod::scrambled, 1, 0.002}};
-    const bool bonded = !GetParam()().bonds.empty();  // bonds that break make lists anew: dear
+    const bool bonded = !GetParam().setup().bonds.empty();  // bonds that break make lists anew: dear
     for (const How& how : hows) {
         if (bonded && how.partition != PartitionMethod::cheapest &&
             how.partition != PartitionMethod::scrambled)
@@ -196,16 +227,17 @@ TEST_P(GrainsSameBits, WhoeverOwnsWhat) {
 }
 
 TEST_P(GrainsSameBits, AfterInterruption) {
-    const Communicator world(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
+    const Communicator world(MPI_COMM_WORLD);
+    const GrainSetup setup = GetParam().setup();
     for (const int stop : {1, 101}) {
-        GrainSimulation first = prepared(world, GetParam(), {}, grain_set(world, cloud()));
+        GrainSimulation first = prepared(world, GetParam(), {});
         first.start();
         for (int k = 0; k < stop; ++k) first.step();
         const ParticleSet contacts = first.save();
         const GatheredState saved_grains = gather_state(world, first.grains()),
                             saved_contacts = gather_state(world, contacts);
         EXPECT_TRUE(stop == 1 || saved_contacts.ids.size() > 30);
-        const bool bonded = !first.setup().bonds.empty();
+        const bool bonded = !setup.bonds.empty();
         GatheredState saved_bonds;
         if (bonded) saved_bonds = gather_state(world, first.saved_bonds());
         // Each rank takes an equal share in order of id, as from a checkpoint.
@@ -216,15 +248,14 @@ TEST_P(GrainsSameBits, AfterInterruption) {
             };
         };
         ParticleSet grains("grains", 3);
-        GrainSimulation::add_fields(grains);
-        if (bonded) grains.add(field::broken_bonds);
+        GrainSimulation::add_fields(grains, setup);
         fill(grains, saved_grains, share(saved_grains));
-        ParticleSet read = dem::empty_contacts(3, GrainSimulation::history_fields(GetParam()()));
+        ParticleSet read = dem::empty_contacts(3, GrainSimulation::history_fields(setup));
         fill(read, saved_contacts, share(saved_contacts));
         ParticleSet read_bonds = dem::empty_pairs("bonds", 3, dem::BondList::fields());
         if (bonded) fill(read_bonds, saved_bonds, share(saved_bonds));
         GrainSimulation second =
-            prepared(world, GetParam(), {PartitionMethod::bisection, 5, 0.0007}, std::move(grains));
+            prepared(world, setup, {PartitionMethod::bisection, 5, 0.0007}, std::move(grains));
         second.resume(first.time(), first.step_count(), read, bonded ? &read_bonds : nullptr);
         for (int k = stop; k < steps; ++k) second.step();
         EXPECT_EQ(hash_of(world, second), serial_hash_) << "stopped at step " << stop;
@@ -234,15 +265,13 @@ TEST_P(GrainsSameBits, AfterInterruption) {
     }
 }
 
-std::string name_of(const testing::TestParamInfo<MakeSetup>& tested) {
-    constexpr const char* names[] = {"OnAFloor", "InADrum", "StickyOnAFloor", "BondedOnAFloor"};
-    return names[tested.index];
-}
-
 INSTANTIATE_TEST_SUITE_P(Scenes, GrainsSameBits,
-                         testing::Values(static_cast<MakeSetup>(&on_a_floor), &in_a_drum, &sticky_on_a_floor,
-                                         &bonded_on_a_floor),
-                         name_of);
+                         testing::Values(Tested{"SpheresOnAFloor", on_a_floor, spheres},
+                                         Tested{"StickyOnAFloor", sticky_on_a_floor, spheres},
+                                         Tested{"BondedOnAFloor", bonded_on_a_floor, spheres},
+                                         Tested{"SpheresInADrum", in_a_drum, spheres},
+                                         Tested{"ClumpsOnAFloor", clumps_on_a_floor, clumps}),
+                         [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace talus::test

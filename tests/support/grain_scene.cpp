@@ -60,6 +60,23 @@ ParticleSet grain_set(const Communicator& comm, const std::vector<GrainState>& g
     return set;
 }
 
+ParticleSet clump_set(const Communicator& comm, const GrainSetup& setup,
+                      const std::vector<dem::ClumpState>& clumps) {
+    ParticleSet set("grains", 3);
+    GrainSimulation::add_fields(set, setup);
+    const dem::ClumpBody& body = setup.clumps[0];
+    const std::size_t spheres = body.shape->radii.size();
+    for (std::size_t id = 0; id < clumps.size() * spheres; ++id) {
+        if (id % static_cast<std::size_t>(comm.size()) != static_cast<std::size_t>(comm.rank())) continue;
+        const std::size_t i = set.size();
+        set.resize(i + 1);
+        set.data(field::id)[i] = id;
+        set.data(field::body)[i] = 0;
+        dem::place_new_sphere(set, i, body, id % spheres, clumps[id / spheres]);
+    }
+    return set;
+}
+
 GrainState state_of(const GrainSimulation& simulation, std::uint64_t id) {
     const ParticleSet& set = simulation.grains();
     for (std::size_t i = 0; i < set.size(); ++i) {

@@ -32,11 +32,11 @@ double stored_displacement(double lag, int steps_of_a_period, int periods) {
     return std::sqrt(history[0] * history[0] + history[1] * history[1] + history[2] * history[2]);
 }
 
-// D. Vyas et al., arXiv 2410.14798 (2024): fine grains between large ones stick where codes combine velocities
-// of the middle of the step with positions of its end. With v_n, v_t along the normal and across it and D the
-// distance of the centres the normal turns by v_t dt/(2 D) in between, so that each step stores -v_n v_t
-// dt^2/(2 D) too much: pi omega dt A B/(2 D) a period for amplitudes A and B, growing without end. Velocities
-// of the same time store nothing.
+// D. Vyas et al., arXiv 2410.14798 (2024): fine grains between large ones stick where codes combine
+// velocities of the middle of the step with positions of its end. With v_n, v_t along the normal and across
+// it and D the distance of the centres the normal turns by v_t dt/(2 D) in between, so that each step stores
+// -v_n v_t dt^2/(2 D) too much: pi omega dt A B/(2 D) a period for amplitudes A and B, growing without end.
+// Velocities of the same time store nothing.
 TEST(HistoryOrder, FineGrainOnALargeOneStoresNoFalseDisplacement) {
     constexpr int steps = 200, periods = 50;
     const double trap = periods * pi * (2 * pi / steps) * 0.05e-3 * 0.01e-3 / (2 * 20.98e-3);
@@ -60,9 +60,8 @@ TEST(HistoryOrder, TangentialHistoryDampsInFirstOrderOfTheStep) {
         GrainSetup setup = grain_setup({soft}, radius, dt);
         setup.gravity = {0, 0, -g};
         setup.walls.push_back({"floor", 0, dem::PlaneShape{{}, {0, 0, 1}}, {}});
-        GrainSimulation run(
-            comm, setup,
-            grain_set(comm, {{{0, 0, radius - depth}, {speed, 0, 0}, {}, radius, density}}));
+        GrainSimulation run(comm, setup,
+                            grain_set(comm, {{{0, 0, radius - depth}, {speed, 0, 0}, {}, radius, density}}));
         run.start();
         const double period = 2 * pi / omega;
         double greatest = 0;

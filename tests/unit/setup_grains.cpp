@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -117,6 +118,36 @@ TEST(SetupGrains, RefusesWhatCannotBe) {
                  "contact[0].restitution = 1.2");
 }
 
+// Eight places, two spheres at each: 1 mm apart, of 1 mm radius.
+TEST(SetupGrains, ClumpsStandAtThePlacesOfAPacking) {
+    const std::string table =
+        "[clumps.pair]\nx = [\"-0.5 mm\", \"0.5 mm\"]\ny = [0, 0]\nz = [0, 0]\nradii = [0.001, 0.001]\n";
+    const auto with = [&](const std::string& key, const std::string& clumps) {
+        return replaced("radius = 0.001", key) + clumps;
+    };
+    const Communicator comm(MPI_COMM_SELF);
+    for (const bool turned : {false, true}) {
+        const GrainScene scene =
+            read(with(turned ? "clump = \"pair\"" : "clump = \"pair\"\norientation = \"aligned\"", table));
+        const ParticleSet grains = make_grains(comm, scene);
+        ASSERT_EQ(grains.size(), 2U * 10 * 10 * 8);
+        const double* x = grains.data(field::position, 0);
+        EXPECT_EQ(std::abs(x[1] - x[0] - 0.001) < 1e-12, !turned);
+        const dem::ClumpBody& clump = scene.simulation.clumps.at(0);
+        // Two balls less the lens that they share, 5 pi/12 r^3.
+        EXPECT_NEAR(clump.mass(), 2500 * (8.0 / 3 - 5.0 / 12) * M_PI * 1e-9, 1e-4 * clump.mass());
+        EXPECT_EQ(grains.data(field::mass)[5], clump.mass());
+    }
+    EXPECT_NE(fault_of(with("clump = \"trio\"", table)).find("there is no table [clumps.trio]"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with("clump = \"pair\"", "[clumps.pair]\nx = [0]\ny = [0]\nz = [0]\nradii = [0]\n"))
+                  .find("lengths above 0"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with("clump = \"pair\"", "[clumps.pair]\nx = [0]\ny = [0]\nz = [0]\nradii = [1, 1]\n"))
+                  .find("clumps.pair.x"),
+              std::string::npos);
+}
+
 // Walls that differ along a periodic axis would be missed by the images of grains.
 TEST(SetupGrains, OnlyPlanesThatDoNotTurnStandInPeriodicBoxes) {
     expect_fault(
@@ -198,6 +229,65 @@ TEST_F(MeshWalls, FaultsNameTheFile) {
     expect("kind = \"mesh\"\nfile = \"empty.obj\"", "empty.obj");
     write("closed.obj", tetrahedron(4));
     expect("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = 0", "wall[0].file_unit = 0");
+}
+
+/// What many draws of a distribution give.
+struct Drawn {
+    double least = 1e300, greatest = 0;
+    double volume_below = 0;  ///< share of the volume of radii up to `at`
+    double number_below = 0;  ///< the same of the grains
+};
+
+Drawn drawn(const std::string& keys, double at) {
+    std::string text = replaced("radius = 0.001", keys);
+    text.replace(text.find("3e-6"), 4, "1e-9");
+    const GrainSizes sizes = read(text).bodies[0].sizes;
+    const RandomStream random{7, RandomPurpose::positions, 0};
+    Drawn found;
+    double volume = 0;
+    constexpr std::uint64_t draws = 100000;
+    for (std::uint64_t id = 0; id < draws; ++id) {
+        const double r = sizes.radius(random, id, 3), r3 = r * r * r;
+        found.least = std::min(found.least, r);
+        found.greatest = std::max(found.greatest, r);
+        found.volume_below += r <= at ? r3 : 0;
+        found.number_below += r <= at ? 1.0 / draws : 0;
+        volume += r3;
+    }
+    found.volume_below /= volume;
+    return found;
+}
+
+// Closed forms; 1e5 draws scatter by 1/sqrt(1e5) = 0.003, volume by more: 2.5 of that are allowed, 5 of
+// volume.
+TEST(SetupGrains, SizesAreDistributedAsAskedFor) {
+    Drawn found = drawn("radii = [0.0005, 0.0015]", 0.001);
+    EXPECT_NEAR(found.number_below, 0.5, 0.008);
+    found = drawn("radii = [0.0001, 0.002]\ndistribution = \"volume_uniform\"", 0.00105);
+    EXPECT_NEAR(found.volume_below, 0.5, 0.015);
+    EXPECT_GE(found.least, 0.0001);
+    EXPECT_LE(found.greatest, 0.002);
+    EXPECT_GT(found.greatest, 0.0019);
+    const std::string lognormal = "distribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.5";
+    found = drawn("radii = [1e-6, 0.0021]\n" + lognormal, 0.001);
+    // 0.5 of what is left below ln(2.1)/0.5 = 1.4839 standard deviations, which is 0.93108.
+    EXPECT_NEAR(found.number_below, 0.5 / 0.93108, 0.008);
+    EXPECT_LE(found.greatest, 0.0021);
+    found =
+        drawn("radii = [0.0005, 0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1, 1, 2]", 0.001);
+    EXPECT_NEAR(found.volume_below, 0.5, 0.015);
+    EXPECT_NEAR(found.number_below, 1 - 0.25 / (8 + 1 + 0.25), 0.008);
+}
+
+TEST(SetupGrains, RefusesSizesThatCannotBe) {
+    expect_fault("radius = 0.001", "radii = [0.002, 0.001]",
+                 "grains[0].radii = [0.002, 0.001] (must be two radii above 0 in order)");
+    expect_fault("radius = 0.001", "radii = [0.001, 0.002]\ndistribution = \"normal\"", "distribution");
+    expect_fault("radius = 0.001",
+                 "radii = [0.01, 0.02]\ndistribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.2",
+                 "less than a hundredth");
+    expect_fault("radius = 0.001", "radii = [0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1]",
+                 "as many as radii");
 }
 
 }  // namespace

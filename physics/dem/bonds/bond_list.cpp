@@ -63,6 +63,10 @@ class Places {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;
 };
 
+std::uint64_t pair_key(std::uint32_t i, std::uint32_t j) {
+    return std::uint64_t{std::min(i, j)} << 32 | std::max(i, j);
+}
+
 double inertia_of(const Grain<double>& grain) { return 0.4 * grain.mass * grain.radius * grain.radius; }
 
 }  // namespace
@@ -147,19 +151,20 @@ std::optional<std::array<std::uint64_t, 2>> BondList::list(const ParticleSet& gr
         if (i != nowhere) add(i, near_i);
         if (j != nowhere && near_i != j) add(places.nearest(record.first, j), j);
     }
+    joined_.clear();
+    for (const Bond& bond : bonds_) joined_.push_back(pair_key(bond.first, bond.second));
+    std::sort(joined_.begin(), joined_.end());
     return lost;
 }
 
-void BondList::exclude_from(ContactList& contacts) const {
-    const auto key = [](std::uint32_t first, std::uint32_t second) {
-        return std::uint64_t{first} << 32 | second;
-    };
-    std::vector<std::uint64_t> bonded;
-    for (const Bond& bond : bonds_) bonded.push_back(key(bond.first, bond.second));
-    std::sort(bonded.begin(), bonded.end());
-    contacts.remove_if([&](std::size_t p) {
-        return std::binary_search(bonded.begin(), bonded.end(), key(contacts.first[p], contacts.second[p]));
-    });
+bool BondList::joins(std::uint32_t i, std::uint32_t j) const {
+    return std::binary_search(joined_.begin(), joined_.end(), pair_key(i, j));
+}
+
+void BondList::mark_copies(std::size_t own, std::span<std::uint8_t> wanted) const {
+    for (const Bond& bond : bonds_)
+        for (const std::uint32_t i : {bond.first, bond.second})
+            if (i >= own) wanted[i - own] = 1;
 }
 
 BondFault BondList::evaluate(const Evaluation& evaluation, ParticleSet& grains) {
