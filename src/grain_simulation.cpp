@@ -60,12 +60,14 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     largest_radius_ = comm_.all_max(largest_radius_);
     reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
     decomposition_.expect(grains_);
-    // Ranks see all that may act on their grains, and the other ends of their bonds.
+    // Ranks see all that may act on their grains, and the other ends of their bonds and clumps.
     const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
-    const double searched =
-        std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent());
-    add_fields(grains_, setup_);
-    grid_ = std::make_unique<CellGrid>(setup_.box, searched, 1);
+    grid_ = std::make_unique<CellGrid>(
+        setup_.box, std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent()), 1);
+    if (bonds_.in_use())
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
+            grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
 }
 
@@ -79,10 +81,6 @@ void GrainSimulation::add_fields(ParticleSet& grains) {
 void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
     add_fields(grains);
     if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
-    if (setup.bonds.empty()) return;
-    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-             &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
-        grains.add(*info);
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
@@ -109,9 +107,10 @@ void GrainSimulation::join_grains() {
     double gap = 0;
     for (const dem::BondRule& rule : setup_.bonds) gap = std::max(gap, rule.gap * largest_radius_);
     dem::ContactList near(0);
+    const std::vector<std::uint8_t> one_material(setup_.material.size(), 0);
     const dem::PairRule rule{.margin = gap,
                              .largest_radius = largest_radius_,
-                             .material = setup_.material,
+                             .material = one_material,
                              .held = setup_.held,
                              .materials = 1};
     dem::list_pairs(grains_, decomposition_.table(), rule, near);
@@ -146,13 +145,13 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::motion);
     rows_.predict(grains_, time_step);
     clumps_.predict(grains_, time_step, rows_);
-    phases_.enter(Phase::halo);
     if (bonds_.in_use()) {
         dem::predict_half_step(grains_, time_step);
         decomposition_.halo().begin(grains_,
                                     {&field::half_step_velocity, &field::half_step_angular_velocity});
         decomposition_.halo().finish();
     }
+    phases_.enter(Phase::halo);
     rows_halo_.begin(rows_.values());
     phases_.enter(Phase::forces);
     const double approach = 2 * moved_ + 0.001 * setup_.skin;  // and what rounding may add
@@ -184,8 +183,8 @@ void GrainSimulation::finish(double kick_step) {
     if (!std::isfinite(moved2)) refuse_not_finite();
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
-    const bool changed = walls_moved || bonds_.broken();
-    std::array<double, 3> greatest{moved2, changed ? 1.0 : 0.0, fault_.empty() ? 0.0 : 1.0};
+    std::array<double, 3> greatest{moved2, walls_moved || bonds_.broken() ? 1.0 : 0.0,
+                                   fault_.empty() ? 0.0 : 1.0};
     phases_.enter(Phase::wait);
     comm_.all_max(std::span<double>(greatest));
     moved_ = std::sqrt(greatest[0]);
@@ -313,35 +312,31 @@ void GrainSimulation::describe_grains() {
     }
 }
 
-/// The pairs that have no contact: spheres of a clump, ends of a bond.
-std::function<bool(std::uint32_t, std::uint32_t)> GrainSimulation::pairs_left_out() const {
-    auto inner = clumps_.inner_pairs(grains_);
-    if (!bonds_.in_use()) return inner;
-    return [this, inner](std::uint32_t i, std::uint32_t j) {
-        return bonds_.joins(i, j) || (inner && inner(i, j));
-    };
-}
-
 void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records, double time) {
     const std::size_t materials =
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
+    const auto in_clump = clumps_.inner_pairs(grains_);
     if (bonds_.in_use())
         if (const auto lost = bonds_.list(grains_))
             refuse_bond({dem::BondFault::stretched, lost->front(), lost->back()});
-    const dem::PairRule rule{.margin = listed_gap(),
-                             .largest_radius = largest_radius_,
-                             .material = setup_.material,
-                             .held = setup_.held,
-                             .materials = materials,
-                             .left_out = pairs_left_out()};
+    const auto bonded = bonds_.pairs();
+    dem::PairRule rule{.margin = listed_gap(),
+                       .largest_radius = largest_radius_,
+                       .material = setup_.material,
+                       .held = setup_.held,
+                       .materials = materials};
+    if (in_clump || bonded)
+        rule.left_out = [&](std::uint32_t i, std::uint32_t j) {
+            return (in_clump && in_clump(i, j)) || (bonded && bonded(i, j));
+        };
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
     dem::restore_records(map, id_of, id_of, pairs_);
-    std::vector<std::uint8_t> copies = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
-    bonds_.mark_copies(grains_.size(), copies);
-    rows_halo_.choose(decomposition_.halo(), grains_.size(), copies);
+    std::vector<std::uint8_t> needed = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
+    bonds_.mark_copies(grains_.size(), needed);
+    rows_halo_.choose(decomposition_.halo(), grains_.size(), needed);
     poses_ = poses_at(time);
     at_walls_.list(grains_, setup_.walls, poses_, rule);
     at_walls_.restore(records, grains_);
@@ -404,7 +399,6 @@ GrainTotals GrainSimulation::totals() const {
     std::array<std::uint64_t, 5> counts{};
     for (std::size_t i = 0; i < grains_.size(); ++i) {
         counts[2] += setup_.held[body[i]] ? 0 : 1;
-        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
         const dem::ClumpBody* clump = clumps_.of_body(body[i]);
         if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
         const Field<double>&centre = clump ? field::clump_centre : field::position,
@@ -426,6 +420,7 @@ GrainTotals GrainSimulation::totals() const {
                                    : 0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
         sums[potential].add(m[i] * potential_per_mass);
         greatest_speed2 = std::max(greatest_speed2, speed2);
+        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
     }
     std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
     const auto sticks_at = std::visit(
@@ -434,21 +429,24 @@ GrainTotals GrainSimulation::totals() const {
         },
         setup_.laws);
     // Laws that act across gaps list pairs that only do that.
-    const auto is_contact = [&](double overlap, bool sticks) { return reach_ == 0 || overlap > 0 || sticks; };
+    const auto is_contact = [&](double overlap, const auto& remembered) {
+        return reach_ == 0 || overlap > 0 || (sticks_at > 0 && remembered(sticks_at - 1) > 0);
+    };
     for (std::size_t k = 0; k < pairs_.now.count; ++k) {
         const std::uint32_t i = pairs_.first[pairs_.now.pair[k]], j = pairs_.second[pairs_.now.pair[k]];
         double distance2 = 0;
         for (std::size_t a = 0; a < 3; ++a)
             distance2 += (rows_[i][a] - rows_[j][a]) * (rows_[i][a] - rows_[j][a]);
         const double overlap = r[i] + r[j] - std::sqrt(distance2);
-        const bool sticks = sticks_at > 0 && pairs_.now.history[sticks_at - 1][k] > 0;
-        counts[0] += i < grains_.size() && is_contact(overlap, sticks) ? 1 : 0;
+        counts[0] +=
+            i < grains_.size() && is_contact(overlap, [&](std::size_t c) { return pairs_.now.history[c][k]; })
+                ? 1
+                : 0;
         greatest[1] = std::max(greatest[1], overlap / std::min(r[i], r[j]));
     }
     for (const dem::WallTouch& touch : at_walls_.touches()) {
         greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
-        const bool sticks = sticks_at > 0 && touch.history[sticks_at - 1] > 0;
-        counts[1] += is_contact(touch.overlap, sticks) ? 1 : 0;
+        counts[1] += is_contact(touch.overlap, [&](std::size_t c) { return touch.history[c]; }) ? 1 : 0;
         const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
         for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
     }

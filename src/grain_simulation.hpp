@@ -1,7 +1,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,10 +28,10 @@ struct GrainSetup {
     std::vector<std::uint8_t> held;           ///< one a body: 1 if its grains never move
     std::vector<dem::ClumpBody> clumps = {};  ///< one a body, or none at all
     std::vector<dem::Wall> walls;
-    std::vector<dem::BondRule> bonds = {};  ///< which grains are joined at the start; most often none
-    dem::Vector3<> gravity;                 ///< [m s-2]
-    double time_step = 0;                   ///< the same throughout [s]
-    double skin = 0;                        ///< gap up to which pairs are listed [m]; no result depends on it
+    std::vector<dem::BondRule> bonds{};  ///< which grains are joined at the start; most often none
+    dem::Vector3<> gravity;              ///< [m s-2]
+    double time_step = 0;                ///< the same throughout [s]
+    double skin = 0;                     ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };
@@ -117,7 +116,6 @@ class GrainSimulation {
     void refuse_overload(const dem::Overload& overload, bool at_wall);
     void join_grains();
     void refuse_bond(const dem::BondFault& found);
-    std::function<bool(std::uint32_t, std::uint32_t)> pairs_left_out() const;
     double listed_gap() const { return reach_ + setup_.skin; }
 
     const Communicator& comm_;

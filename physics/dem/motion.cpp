@@ -41,27 +41,27 @@ void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) 
 
 namespace {
 
+void predict(ParticleSet& grains, double time_step, const Field<double>& velocity,
+             const Field<double>& acceleration, const Field<double>& predicted) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double *v = grains.data(velocity, axis), *a = grains.data(acceleration, axis);
+        double* p = grains.data(predicted, axis);
+        for (std::size_t i = 0; i < grains.size(); ++i) p[i] = v[i] + time_step * a[i];
+    }
+}
+
 /// The components of a field to change.
 using Components = std::array<double*, 3>;
 Components components(ParticleSet& grains, const Field<double>& field) {
     return {grains.data(field, 0), grains.data(field, 1), grains.data(field, 2)};
 }
 
-void advance(ParticleSet& grains, double time_step, const Field<double>& values, const Field<double>& rates,
-             const Field<double>& advanced) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double *v = grains.data(values, axis), *a = grains.data(rates, axis);
-        double* to = grains.data(advanced, axis);
-        for (std::size_t i = 0; i < grains.size(); ++i) to[i] = v[i] + time_step * a[i];
-    }
-}
-
 }  // namespace
 
 void predict_half_step(ParticleSet& grains, double time_step) {
     const double half = 0.5 * time_step;
-    advance(grains, half, field::velocity, field::acceleration, field::half_step_velocity);
-    advance(grains, half, field::angular_velocity, field::angular_acceleration,
+    predict(grains, half, field::velocity, field::acceleration, field::half_step_velocity);
+    predict(grains, half, field::angular_velocity, field::angular_acceleration,
             field::half_step_angular_velocity);
 }
 

@@ -60,6 +60,7 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
     ParticleSet contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.simulation));
     std::vector<ParticleSet*> sets{&grains, &contacts};
     if (has_bonds()) {
+        grains.add(field::broken_bonds);
         read_bonds_ = dem::empty_pairs("bonds", 3, dem::BondList::fields());
         sets.push_back(&*read_bonds_);
     }

@@ -182,7 +182,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     const double reach = scene.faulty() ? 0
                                         : std::max(dem::greatest_reach(laws.table(), greatest),
                                                    dem::greatest_bond_reach(bonds, greatest));
-    check_box(root.section("box"), box, std::max(2 * greatest + reach, 2 * widest) + skin);
+    check_box(root.section("box"), box, 2 * std::max(greatest, widest) + reach + skin);
     const GrainTimeStep limit = laws.time_step(bodies);
     const double usual_step = std::min(limit.usual, usual_step_of_bonds(bonds, bodies));
     const double time_step = table.number("time_step", "s", usual_step, positive);

@@ -63,10 +63,6 @@ class Places {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;
 };
 
-std::uint64_t pair_key(std::uint32_t i, std::uint32_t j) {
-    return std::uint64_t{std::min(i, j)} << 32 | std::max(i, j);
-}
-
 double inertia_of(const Grain<double>& grain) { return 0.4 * grain.mass * grain.radius * grain.radius; }
 
 }  // namespace
@@ -151,20 +147,26 @@ std::optional<std::array<std::uint64_t, 2>> BondList::list(const ParticleSet& gr
         if (i != nowhere) add(i, near_i);
         if (j != nowhere && near_i != j) add(places.nearest(record.first, j), j);
     }
-    joined_.clear();
-    for (const Bond& bond : bonds_) joined_.push_back(pair_key(bond.first, bond.second));
-    std::sort(joined_.begin(), joined_.end());
     return lost;
 }
 
-bool BondList::joins(std::uint32_t i, std::uint32_t j) const {
-    return std::binary_search(joined_.begin(), joined_.end(), pair_key(i, j));
+std::function<bool(std::uint32_t, std::uint32_t)> BondList::pairs() const {
+    if (bonds_.empty()) return {};
+    const auto key = [](std::uint32_t i, std::uint32_t j) {
+        return std::uint64_t{std::min(i, j)} << 32 | std::max(i, j);
+    };
+    std::vector<std::uint64_t> bonded;
+    for (const Bond& bond : bonds_) bonded.push_back(key(bond.first, bond.second));
+    std::sort(bonded.begin(), bonded.end());
+    return [key, bonded = std::move(bonded)](std::uint32_t i, std::uint32_t j) {
+        return std::binary_search(bonded.begin(), bonded.end(), key(i, j));
+    };
 }
 
-void BondList::mark_copies(std::size_t own, std::span<std::uint8_t> wanted) const {
+void BondList::mark_copies(std::size_t own, std::span<std::uint8_t> copies) const {
     for (const Bond& bond : bonds_)
         for (const std::uint32_t i : {bond.first, bond.second})
-            if (i >= own) wanted[i - own] = 1;
+            if (i >= own) copies[i - own] = 1;
 }
 
 BondFault BondList::evaluate(const Evaluation& evaluation, ParticleSet& grains) {

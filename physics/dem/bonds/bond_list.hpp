@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -52,10 +53,10 @@ class BondList {
     /// Finds both ends of the bonds among own grains and copies, where they are nearest to each other; drops
     /// those without an end among the own. Returns the ids of a bond whose other end is not known, if any.
     std::optional<std::array<std::uint64_t, 2>> list(const ParticleSet& grains);
-    /// Whether two grains as stored are joined.
-    bool joins(std::uint32_t i, std::uint32_t j) const;
-    /// Sets 1 for the copies that are ends of bonds; `own`: number of grains before the copies.
-    void mark_copies(std::size_t own, std::span<std::uint8_t> wanted) const;
+    /// Which pairs, as stored, are bonded and thus have no contact; empty without bonds.
+    std::function<bool(std::uint32_t, std::uint32_t)> pairs() const;
+    /// Marks the copies that bonds end at, the first of them being `own`.
+    void mark_copies(std::size_t own, std::span<std::uint8_t> copies) const;
 
     /// Adds forces and torques to the own ends; counts bonds that break in field::broken_bonds of them.
     BondFault evaluate(const Evaluation& evaluation, ParticleSet& grains);
@@ -86,7 +87,6 @@ class BondList {
 
     std::vector<BondRule> rules_;
     std::vector<Bond> bonds_;
-    std::vector<std::uint64_t> joined_;  ///< pairs of grains as stored, in order
     std::size_t broken_ = 0;
 };
 
