@@ -23,6 +23,13 @@ double mirror_sign(Shape shape, int component, int dimension, const std::array<b
     return 1;
 }
 
+double wrapped(double coordinate, double lower, double upper) {
+    if (coordinate >= lower && coordinate < upper) return coordinate;
+    const double length = upper - lower;
+    coordinate -= length * std::floor((coordinate - lower) / length);
+    return coordinate < lower || coordinate >= upper ? lower : coordinate;  // rounding put it on the edge
+}
+
 namespace {
 
 void mirror_state(ParticleSet& particles, std::size_t i, int axis) {
@@ -40,13 +47,7 @@ void mirror_state(ParticleSet& particles, std::size_t i, int axis) {
 }
 
 void wrap_axis(std::span<double> x, double lower, double upper) {
-    const double length = upper - lower;
-    for (double& coordinate : x) {
-        if (coordinate >= lower && coordinate < upper) continue;
-        coordinate -= length * std::floor((coordinate - lower) / length);
-        if (coordinate >= upper) coordinate = lower;  // rounding put it on the edge
-        if (coordinate < lower) coordinate = lower;
-    }
+    for (double& coordinate : x) coordinate = wrapped(coordinate, lower, upper);
 }
 
 /// Brings a coordinate back between two walls; true if it was mirrored an odd number of times.

@@ -36,6 +36,14 @@ double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, 
     return greatest;
 }
 
+/// Of all grains that are or may come [m].
+double largest_radius(const Communicator& comm, const ParticleSet& grains, const GrainFlowPlan& flow) {
+    double largest = 0;
+    for (const double r : grains.own(field::radius)) largest = std::max(largest, r);
+    for (const GrainSource& source : flow.sources) largest = std::max(largest, source.greatest_radius);
+    return comm.all_max(largest);
+}
+
 }  // namespace
 
 GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, ParticleSet grains)
@@ -44,14 +52,13 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       setup_(std::move(setup)),
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
+      largest_radius_(largest_radius(comm, grains_, setup_.flow)),
+      reach_(dem::greatest_reach(setup_.laws, largest_radius_)),
+      flow_(comm, places_.aligned(setup_.box), setup_.flow, largest_radius_),
       pairs_(history_count(setup_.laws)) {
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
-    for (const double r : std::as_const(grains_).own(field::radius))
-        largest_radius_ = std::max(largest_radius_, r);
-    largest_radius_ = comm_.all_max(largest_radius_);
-    reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
     decomposition_.expect(grains_);
     grid_ = std::make_unique<CellGrid>(setup_.box, 2 * largest_radius_ + listed_gap(), 1);
     decomposition_.divide(grains_, *grid_);
@@ -72,13 +79,16 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 }
 
 void GrainSimulation::start() {
+    flow_.begin(grains_);
     arrange({}, time_);
     dem::predict(grains_, 0);
     evaluate(0);
     finish(0);
 }
 
-void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts) {
+void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
+                             const ParticleSet& contacts) {
+    flow_.restore(numbers, grains_);
     time_ = time;
     step_ = last_balance_ = step;
     arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_), time_);
@@ -87,14 +97,29 @@ void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet&
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
+    auto kept_contacts = exchange_grains();
     dem::drift(grains_, setup_.time_step, places_);
-    if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
+    if (outdated_ || kept_contacts)
+        arrange(kept_contacts ? std::move(*kept_contacts) : records_of_contacts(), time_ + setup_.time_step);
     dem::predict(grains_, setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
     finish(setup_.time_step);
     phases_.stop();
+}
+
+/// Grains come and go before the step; then the contacts as they were are returned, for the list has to be
+/// made anew. Those of grains that went are not found again.
+std::optional<std::vector<dem::ContactRecord>> GrainSimulation::exchange_grains() {
+    if (!flow_.due(step_)) return {};
+    std::vector<dem::ContactRecord> contacts = records_of_contacts();
+    const std::vector<dem::WallPose> poses = poses_at(time_);
+    const GrainFlow::Change change =
+        flow_.apply(grains_, {time_, step_, places_, setup_.walls, poses, setup_.held, setup_.gravity});
+    if (!change.any()) return {};
+    decomposition_.expect_change(change.added, change.removed);
+    return contacts;
 }
 
 /// Forces and torques of all contacts, those of own grains while copies are on their way.

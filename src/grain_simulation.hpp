@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
 #include "physics/dem/wall_contacts.hpp"
+#include "src/flow/grain_flow.hpp"
 #include "src/phases.hpp"
 
 namespace talus {
@@ -29,6 +32,7 @@ struct GrainSetup {
     double skin = 0;         ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
+    GrainFlowPlan flow{};
 };
 
 /// Totals over all grains, exact sums rounded once: the same bits on any number of ranks.
@@ -57,9 +61,10 @@ class GrainSimulation {
 
     /// First evaluation of a new run at time 0. Collective.
     void start();
-    /// Goes on from a checkpoint: the grains given to the constructor as they were read, and their contacts.
-    /// Collective.
-    void resume(double time, std::uint64_t step, const ParticleSet& contacts);
+    /// Goes on from a checkpoint: the grains given to the constructor as they were read, their contacts and
+    /// what save_numbers() added to its state. Collective.
+    void resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
+                const ParticleSet& contacts);
 
     /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
     /// all bounds, or a grain that was lost, left through a wall or moves no finite way. Collective.
@@ -72,6 +77,9 @@ class GrainSimulation {
     const GrainSetup& setup() const { return setup_; }
     const Communicator& comm() const { return comm_; }
     const Decomposition& decomposition() const { return decomposition_; }
+    /// What came and went.
+    GrainFlow& flow() { return flow_; }
+    const GrainFlow& flow() const { return flow_; }
     std::uint64_t total_grains() const { return decomposition_.total_particles(); }
     /// Contacts evaluated by this rank since the counters were reset, those with walls included.
     std::uint64_t evaluated_contacts() const { return evaluated_; }
@@ -85,11 +93,13 @@ class GrainSimulation {
     /// Brings the grains back into the box and to where they belong, as a checkpoint holds them, and returns
     /// the contacts of this rank's grains. Changes no result. Collective.
     ParticleSet save();
+    void save_numbers(std::map<std::string, double>& numbers) const { flow_.save(numbers); }
     /// Collective.
     GrainTotals totals() const;
 
   private:
     void arrange(std::vector<dem::ContactRecord> records, double time);
+    std::optional<std::vector<dem::ContactRecord>> exchange_grains();
     std::vector<dem::ContactRecord> records_of_contacts() const;
     std::vector<dem::ContactRecord> records_below(std::size_t end) const;
     void describe_grains();
@@ -107,8 +117,9 @@ class GrainSimulation {
     GrainSetup setup_;
     ParticleSet grains_;
     Decomposition decomposition_;
+    double largest_radius_, reach_;
     std::unique_ptr<CellGrid> grid_;
-    double largest_radius_ = 0, reach_ = 0;
+    GrainFlow flow_;
     dem::ContactList pairs_;
     dem::WallContacts at_walls_;
     std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list

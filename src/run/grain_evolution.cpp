@@ -7,6 +7,7 @@
 #include "domain/grain_fields.hpp"
 #include "io/agree.hpp"
 #include "io/checkpoint.hpp"
+#include "src/run/flow_columns.hpp"
 #include "src/run/sph_evolution.hpp"
 
 namespace talus {
@@ -65,7 +66,7 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
 }
 
 void GrainEvolution::resume(const RunState& state) {
-    simulation_->resume(state.time, state.step, *read_contacts_);
+    simulation_->resume(state.time, state.step, state.numbers, *read_contacts_);
     read_contacts_.reset();
 }
 
@@ -80,7 +81,10 @@ void GrainEvolution::save(const WriteSets& write) {
     write({&simulation_->grains(), &contacts});
 }
 
-void GrainEvolution::describe(RunState& state) const { state.materials = materials(); }
+void GrainEvolution::describe(RunState& state) const {
+    state.materials = materials();
+    simulation_->save_numbers(state.numbers);
+}
 
 std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
@@ -107,6 +111,7 @@ std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
     for (const dem::Wall& wall : setup_.simulation.walls)
         for (const char axis : {'x', 'y', 'z'})
             columns.push_back({fmt::format("force_{}_{}", wall.name, axis), "N"});
+    append_flow_columns(setup_.simulation.flow, columns);
     return columns;
 }
 
@@ -126,6 +131,7 @@ Diagnostics GrainEvolution::diagnostics() const {
                                static_cast<double>(t.wall_contacts),
                                t.coordination};
     for (const auto& force : t.wall_forces) row.insert(row.end(), force.begin(), force.end());
+    append_flow_values(simulation_->flow(), simulation_->total_grains(), row);
     return {row, 0};
 }
 

@@ -22,6 +22,7 @@ class GrainEvolution : public Evolution {
     void start() override {}  // create() does: overlaps are known only then
     void resume(const RunState& state) override;
     void step() override { simulation_->step(); }
+    std::vector<std::string> news() override { return simulation_->flow().take_notes(); }
     double time() const override { return simulation_->time(); }
     double time_step() const override { return simulation_->time_step(); }
     std::uint64_t step_count() const override { return simulation_->step_count(); }

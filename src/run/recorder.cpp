@@ -147,6 +147,8 @@ void Recorder::begin(Evolution& evolution, double end_time) {
 void Recorder::after_step(Evolution& evolution) {
     const double time = evolution.time();
     evolution.phases().enter(Phase::output);
+    for (const std::string& note : evolution.news())
+        if (comm_.is_root()) files_->log->warn("note: {}", note);
     if (fell_due(time_before_, time, output_.diagnostics_interval)) {
         write_diagnostics(evolution);
         files_->performance->write(evolution);

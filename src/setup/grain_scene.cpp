@@ -8,6 +8,7 @@
 
 #include "domain/grain_fields.hpp"
 #include "domain/random.hpp"
+#include "src/setup/flow_reader.hpp"
 #include "src/setup/grain_law_reader.hpp"
 #include "src/setup/material_reader.hpp"
 #include "src/setup/run_reader.hpp"
@@ -56,7 +57,9 @@ std::vector<std::array<double, 10>> read_list(const Communicator& comm, const Sc
     return rows;
 }
 
-void read_packing(const Section& table, const BodyContext& context, GrainBody& body) {
+}  // namespace
+
+void read_radii(const Section& table, GrainBody& body) {
     if (table.has("radii")) {
         const std::vector<double> radii = table.numbers("radii", "m", 2);
         if (radii.size() == 2 && 0 < radii[0] && radii[0] <= radii[1]) {
@@ -68,6 +71,12 @@ void read_packing(const Section& table, const BodyContext& context, GrainBody& b
     } else {
         body.least_radius = body.greatest_radius = table.number("radius", "m", {}, positive);
     }
+}
+
+namespace {
+
+void read_packing(const Section& table, const BodyContext& context, GrainBody& body) {
+    read_radii(table, body);
     body.shape = read_shape(table, body.material.density, context);
     const bool cubic = table.choice("lattice", {"cubic", "close_packed"}, "cubic") == "cubic";
     body.cell = lattice_cell(cubic ? Lattice::cubic : Lattice::close_packed, 3);
@@ -79,29 +88,20 @@ void read_packing(const Section& table, const BodyContext& context, GrainBody& b
     body.angular_velocity = origin_default(table, "angular_velocity", "rad/s", 3);
 }
 
-std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene, const Box& box,
-                                   GrainLawReader& laws, std::vector<std::uint8_t>& materials,
-                                   std::uint64_t seed) {
+std::vector<GrainBody> read_bodies(const BodyContext& context, GrainLawReader& laws,
+                                   std::vector<std::uint8_t>& materials) {
+    const Section root = context.scene.root();
     std::vector<GrainBody> bodies;
-    const std::vector<Section> tables = scene.root().sections("grains");
-    if (tables.size() > 255) scene.root().error("grains", "more than 255 bodies of grains");
+    const std::vector<Section> tables = root.sections("grains");
+    if (tables.size() > 255) root.error("grains", "more than 255 bodies of grains");
     for (const Section& table : tables) {
         GrainBody body;
         body.name = table.text("name", table.path());
         materials.push_back(laws.material(table));
         body.material = laws.materials()[materials.back()];
         body.held = table.flag("held", false);
-        const BodyContext context{.comm = comm,
-                                  .scene = scene,
-                                  .dimension = 3,
-                                  .domain = {box.lower, box.upper},
-                                  .boundaries = box.boundary,
-                                  .first_body = nullptr,
-                                  .in_impact = false,
-                                  .gravitational_constant = 0,
-                                  .seed = seed};
         if (table.has("file")) {
-            body.listed = read_list(comm, scene, table);
+            body.listed = read_list(context.comm, context.scene, table);
             body.least_radius = infinity;
             for (const auto& row : body.listed) {
                 body.least_radius = std::min(body.least_radius, row[3]);
@@ -131,7 +131,7 @@ void check_box(const Section& table, const Box& box, double reach) {
 
 }  // namespace
 
-bool is_grain_scene(const Scene& scene) { return scene.root().has("grains"); }
+bool is_grain_scene(const Scene& scene) { return scene.root().has("grains") || scene.root().has("source"); }
 
 GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     const Section root = scene.root();
@@ -141,7 +141,17 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     const Box box = read_box(root.section("box"), 3);
     GrainLawReader laws(root);
     std::vector<std::uint8_t> material, held;
-    std::vector<GrainBody> bodies = read_bodies(comm, scene, box, laws, material, seed);
+    const BodyContext context{.comm = comm,
+                              .scene = scene,
+                              .dimension = 3,
+                              .domain = {box.lower, box.upper},
+                              .boundaries = box.boundary,
+                              .first_body = nullptr,
+                              .in_impact = false,
+                              .gravitational_constant = 0,
+                              .seed = seed};
+    std::vector<GrainBody> bodies = read_bodies(context, laws, material);
+    GrainFlowPlan flow = read_flow(root, context, laws, bodies, material);
     double greatest = 0;
     for (const GrainBody& body : bodies) {
         held.push_back(body.held ? 1 : 0);
@@ -173,7 +183,8 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
                            .time_step = time_step,
                            .skin = skin,
                            .partition = partition,
-                           .rebalance_interval = rebalance_interval},
+                           .rebalance_interval = rebalance_interval,
+                           .flow = std::move(flow)},
             .bodies = std::move(bodies),
             .greatest_time_step = limit.greatest,
             .time_step_limit = limit.reason,
@@ -218,6 +229,7 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
     std::uint64_t first_id = 0;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         const GrainBody& body = scene.bodies[b];
+        if (body.inserted) continue;
         const RandomStream random{scene.seed, RandomPurpose::positions, static_cast<std::uint16_t>(b)};
         const std::vector<Row> rows = body.listed.empty() ? packed(body, random, first_id) : body.listed;
         for (std::size_t k = 0; k < rows.size(); ++k) {

@@ -17,6 +17,7 @@ struct GrainBody {
     std::string name;
     dem::GrainMaterial material;
     bool held = false;
+    bool inserted = false;  ///< by a source as time goes on: none at the start, and no shape or packing
     BodyShape shape;
     UnitCell cell;
     double spacing = 0;  ///< cube root of the volume a grain [m]
@@ -39,7 +40,10 @@ struct GrainScene {
     std::uint64_t seed = 0;
 };
 
-/// Whether the scene is one of grains: it has a table [[grains]].
+/// The keys `radius` or `radii` of a body of grains.
+void read_radii(const Section& table, GrainBody& body);
+
+/// Whether the scene is one of grains: it has a table [[grains]] or [[source]].
 bool is_grain_scene(const Scene& scene);
 
 /// Reads everything such a scene says. Throws SceneError (on every rank) with all faults at once. Collective.

@@ -91,6 +91,28 @@ GrainSetup in_a_drum() {
     return setup;
 }
 
+/// The same floor with a rain into the cloud across the periodic edges, where places are scarce, a hole that
+/// swallows grains, across an edge too, and a lid above.
+GrainSetup come_and_go() {
+    GrainSetup setup = on_a_floor();
+    GrainSink hole{"hole", {SphereShape{{0.0993, 0.15, 0.03}, 0.02}, false}}, lid{"lid", {}};
+    hole.interval = 7;
+    hole.begin = 0.0002;
+    lid.region = {HalfSpace{{0, 0, 0.075}, {0, 0, -1}}, false};
+    GrainSource rain{.name = "rain",
+                     .body = 0,
+                     .density = 2500,
+                     .region = BoxShape{{-0.01, 0.1, 0.05}, {0.05, 0.22, 0.1}}};
+    rain.least_radius = 0.002;
+    rain.greatest_radius = 0.006;
+    rain.velocity = {0, 0.3, -1};
+    rain.rate = 1e5;
+    rain.interval = 5;
+    rain.tries = 3;
+    setup.flow = {{hole, lid}, {rain}, 7};
+    return setup;
+}
+
 std::uint64_t hash_of(const Communicator& comm, GrainSimulation& run) {
     const ParticleSet contacts = run.save();
     return state_hash(comm, run.grains()) * 31 + state_hash(comm, contacts);
@@ -163,6 +185,8 @@ TEST_P(GrainsSameBits, AfterInterruption) {
         first.start();
         for (int k = 0; k < stop; ++k) first.step();
         const ParticleSet contacts = first.save();
+        std::map<std::string, double> numbers;
+        first.save_numbers(numbers);
         const GatheredState saved_grains = gather_state(world, first.grains()),
                             saved_contacts = gather_state(world, contacts);
         EXPECT_TRUE(stop == 1 || saved_contacts.ids.size() > 30);
@@ -180,7 +204,7 @@ TEST_P(GrainsSameBits, AfterInterruption) {
         fill(read, saved_contacts, share(saved_contacts));
         GrainSimulation second =
             prepared(world, GetParam(), {PartitionMethod::bisection, 5, 0.0007}, std::move(grains));
-        second.resume(first.time(), first.step_count(), read);
+        second.resume(first.time(), first.step_count(), numbers, read);
         for (int k = stop; k < steps; ++k) second.step();
         EXPECT_EQ(hash_of(world, second), serial_hash_) << "stopped at step " << stop;
         // Saving must not have changed the run that was saved either.
@@ -189,8 +213,39 @@ TEST_P(GrainsSameBits, AfterInterruption) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Walls, GrainsSameBits, testing::Values(&on_a_floor, &in_a_drum),
-                         [](const auto& tested) { return tested.index == 0 ? "OnAFloor" : "InADrum"; });
+INSTANTIATE_TEST_SUITE_P(Walls, GrainsSameBits, testing::Values(&on_a_floor, &in_a_drum, &come_and_go),
+                         [](const auto& tested) {
+                             constexpr const char* names[] = {"OnAFloor", "InADrum", "ComeAndGo"};
+                             return names[tested.index];
+                         });
+
+TEST(GrainFlow, LedgerHoldsWhatCameAndWent) {
+    const Communicator world(MPI_COMM_WORLD);
+    GrainSimulation run = prepared(world, &come_and_go, {}, grain_set(world, cloud()));
+    run.start();
+    for (int k = 0; k < steps; ++k) run.step();
+    const GrainFlow::Came& rain = run.flow().came()[0];
+    const auto gone = run.flow().passed();
+    EXPECT_GT(gone[0].count, 10U);
+    EXPECT_GT(gone[1].count, 20U);
+    EXPECT_GT(rain.count, 50U);
+    EXPECT_GT(rain.missed, 5U);
+    EXPECT_EQ(rain.count + rain.missed, rain.attempts);
+    EXPECT_EQ(run.total_grains(), 700 + rain.count - gone[0].count - gone[1].count);
+    EXPECT_EQ(run.take_notes().size(), 1U) << "that the source is full is said once";
+    double first = 0;
+    for (const GrainState& grain : cloud()) first += mass_of(grain);
+    EXPECT_NEAR(run.totals().mass, first + rain.mass - gone[0].mass - gone[1].mass, 1e-12 * first)
+        << "masses of events, rounded once each";
+}
+
+TEST(GrainFlow, LedgerThatDoesNotAddUpIsRefused) {
+    const Communicator world(MPI_COMM_WORLD);
+    GrainSimulation run = prepared(world, &come_and_go, {}, grain_set(world, cloud()));
+    const std::map<std::string, double> numbers{{"flow.first_count", 701}};
+    const ParticleSet none = dem::empty_contacts(3, GrainSimulation::history_fields(come_and_go()));
+    EXPECT_THROW(run.resume(0, 0, numbers, none), AgreedError);
+}
 
 }  // namespace
 }  // namespace talus::test
