@@ -80,6 +80,7 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 
 void GrainSimulation::start() {
     flow_.begin(grains_);
+    if (setup_.settling) time_ = -setup_.settling->longest;
     arrange({}, time_);
     dem::predict(grains_, 0);
     evaluate(0);
@@ -89,6 +90,8 @@ void GrainSimulation::start() {
 void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
                              const ParticleSet& contacts) {
     flow_.restore(numbers, grains_);
+    if (const auto looks = numbers.find("settle.quiet_looks"); looks != numbers.end())
+        quiet_looks_ = static_cast<int>(looks->second);
     time_ = time;
     step_ = last_balance_ = step;
     arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_), time_);
@@ -106,7 +109,51 @@ void GrainSimulation::step() {
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
     finish(setup_.time_step);
+    if (time_ < 0) settle();
     phases_.stop();
+}
+
+/// Looks whether the grains are quiet; time 0 begins once they have been for long enough.
+void GrainSimulation::settle() {
+    const GrainSettling& settling = *setup_.settling;
+    if (step_ % settling.interval != 0) return;
+    const double imbalance = force_imbalance(comm_, grains_, setup_.held, loaded_contacts());
+    quiet_looks_ = imbalance <= settling.imbalance && !flow_.inserting(time_) ? quiet_looks_ + 1 : 0;
+    if (quiet_looks_ >= settling.lasting) {
+        notes_.push_back(fmt::format("{} grains settled in {} steps, {:.4g} s; forces balance to {:.2g}",
+                                     total_grains(), step_, time_ + settling.longest, imbalance));
+        time_ = 0;
+        outdated_ = true;  // walls may set out
+    } else if (time_ + static_cast<double>(settling.interval) * setup_.time_step >= 0) {
+        throw AgreedError(1,
+                          fmt::format("step {}: the grains have not settled within {} s: the rms force on a "
+                                      "grain is {:.3g} of that of a contact (settle.imbalance = {}){}",
+                                      step_, settling.longest, imbalance, settling.imbalance,
+                                      flow_.inserting(time_) ? ", and sources are not done" : ""));
+    }
+}
+
+std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
+    dem::predict(grains_, 0);
+    Halo& halo = decomposition_.halo();
+    halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
+    halo.finish();
+    rows_.update(grains_, 0, grains_.size_with_halo());
+    std::vector<dem::LoadedContact> contacts = dem::loaded_pairs(rows_, setup_.laws, pairs_);
+    at_walls_.append_loads(rows_, setup_.laws, setup_.walls, poses_at(time_), contacts);
+    return contacts;
+}
+
+void GrainSimulation::save_numbers(std::map<std::string, double>& numbers) const {
+    flow_.save(numbers);
+    if (time_ < 0) numbers["settle.quiet_looks"] = quiet_looks_;
+}
+
+std::vector<std::string> GrainSimulation::take_notes() {
+    std::vector<std::string> notes = flow_.take_notes();
+    notes.insert(notes.end(), notes_.begin(), notes_.end());
+    notes_.clear();
+    return notes;
 }
 
 /// Grains come and go before the step; then the contacts as they were are returned, for the list has to be
@@ -146,8 +193,8 @@ void GrainSimulation::evaluate(double time_step) {
 
 void GrainSimulation::finish(double kick_step) {
     phases_.enter(Phase::motion);
-    const double moved2 =
-        dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step);
+    const double moved2 = dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step,
+                                           setup_.time_step, remaining_motion(kick_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
@@ -159,6 +206,12 @@ void GrainSimulation::finish(double kick_step) {
     comm_.all_max(std::span<int>(flags));
     outdated_ = flags[0] > 0;
     if (flags[1] > 0) comm_.all_agree(1, fault_);
+}
+
+/// Factor by which damping makes velocities smaller in a step, 1 once grains have settled.
+double GrainSimulation::remaining_motion(double time_step) const {
+    if (!setup_.settling || setup_.settling->damping == 0 || time_ >= 0) return 1;
+    return std::exp(-time_step / setup_.settling->damping);
 }
 
 void GrainSimulation::refuse_not_finite() {
@@ -313,7 +366,7 @@ void GrainSimulation::reset_counters() {
 
 GrainTotals GrainSimulation::totals() const {
     enum Sum { mass, kinetic, rotational, potential, px, py, pz, sum_count };
-    std::vector<ExactSum> sums(sum_count + 3 * setup_.walls.size());
+    std::vector<ExactSum> sums(sum_count + 6 * setup_.walls.size());
     double greatest_speed2 = 0;
     const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
     const std::uint8_t* body = grains_.data(field::body);
@@ -351,17 +404,25 @@ GrainTotals GrainSimulation::totals() const {
     }
     for (const dem::WallTouch& touch : at_walls_.touches()) {
         greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
-        const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
-        for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
+        const dem::Vector3<> force = -touch.load.force;
+        const dem::WallPose& pose = poses_[touch.wall];
+        const dem::Vector3<> torque =
+            cross(touch.point - pose.centre - pose.shift, force) - touch.load.couple;
+        std::size_t sum = sum_count + 6 * touch.wall;
+        for (const double component : {force.x, force.y, force.z, torque.x, torque.y, torque.z})
+            sums[sum++].add(component);
     }
     counts[1] = at_walls_.touches().size();
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(greatest));
     comm_.all_sum(std::span<std::uint64_t>(counts));
     const auto mobile = static_cast<double>(std::max<std::uint64_t>(counts[2], 1));
-    std::vector<std::array<double, 3>> wall_forces(setup_.walls.size());
+    std::vector<std::array<double, 3>> wall_forces(setup_.walls.size()), wall_torques(setup_.walls.size());
     for (std::size_t w = 0; w < wall_forces.size(); ++w)
-        for (std::size_t a = 0; a < 3; ++a) wall_forces[w][a] = sums[sum_count + 3 * w + a].value();
+        for (std::size_t a = 0; a < 3; ++a) {
+            wall_forces[w][a] = sums[sum_count + 6 * w + a].value();
+            wall_torques[w][a] = sums[sum_count + 6 * w + 3 + a].value();
+        }
     return {.mass = sums[mass].value(),
             .kinetic_energy = sums[kinetic].value(),
             .rotational_energy = sums[rotational].value(),
@@ -373,6 +434,7 @@ GrainTotals GrainSimulation::totals() const {
             .contacts = counts[0],
             .wall_contacts = counts[1],
             .wall_forces = wall_forces,
+            .wall_torques = wall_torques,
             .coordination = 2 * static_cast<double>(counts[0]) / mobile};
 }
 

@@ -16,6 +16,7 @@
 #include "physics/dem/motion.hpp"
 #include "physics/dem/wall_contacts.hpp"
 #include "src/flow/grain_flow.hpp"
+#include "src/flow/grain_settling.hpp"
 #include "src/phases.hpp"
 
 namespace talus {
@@ -33,6 +34,7 @@ struct GrainSetup {
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
     GrainFlowPlan flow{};
+    std::optional<GrainSettling> settling{};
 };
 
 /// Totals over all grains, exact sums rounded once: the same bits on any number of ranks.
@@ -43,8 +45,9 @@ struct GrainTotals {
     double greatest_speed = 0;
     double greatest_overlap = 0;  ///< over the smaller radius [1]
     std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
-    std::vector<std::array<double, 3>>
-        wall_forces;          ///< of the grains on each wall at the last evaluation [N]
+    /// Of the grains on each wall at the last evaluation [N], and their torques about the centre of its
+    /// motion, which is carried along with it [N m].
+    std::vector<std::array<double, 3>> wall_forces, wall_torques;
     double coordination = 0;  ///< contacts with grains a grain that is not held [1]
 };
 
@@ -59,7 +62,7 @@ class GrainSimulation {
     /// What contacts of the setup's law remember.
     static std::vector<const FieldInfo*> history_fields(const GrainSetup& setup);
 
-    /// First evaluation of a new run at time 0. Collective.
+    /// First evaluation of a new run, at time 0 or where settling begins. Collective.
     void start();
     /// Goes on from a checkpoint: the grains given to the constructor as they were read, their contacts and
     /// what save_numbers() added to its state. Collective.
@@ -67,7 +70,8 @@ class GrainSimulation {
                 const ParticleSet& contacts);
 
     /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
-    /// all bounds, or a grain that was lost, left through a wall or moves no finite way. Collective.
+    /// all bounds, or a grain that was lost, left through a wall or moves no finite way, or if the grains
+    /// have not settled in time. The step with which they have ends at time 0. Collective.
     void step();
 
     double time() const { return time_; }                  ///< [s]
@@ -78,7 +82,6 @@ class GrainSimulation {
     const Communicator& comm() const { return comm_; }
     const Decomposition& decomposition() const { return decomposition_; }
     /// What came and went.
-    GrainFlow& flow() { return flow_; }
     const GrainFlow& flow() const { return flow_; }
     std::uint64_t total_grains() const { return decomposition_.total_particles(); }
     /// Contacts evaluated by this rank since the counters were reset, those with walls included.
@@ -93,7 +96,11 @@ class GrainSimulation {
     /// Brings the grains back into the box and to where they belong, as a checkpoint holds them, and returns
     /// the contacts of this rank's grains. Changes no result. Collective.
     ParticleSet save();
-    void save_numbers(std::map<std::string, double>& numbers) const { flow_.save(numbers); }
+    void save_numbers(std::map<std::string, double>& numbers) const;
+    /// What the last steps did that a user should know.
+    std::vector<std::string> take_notes();
+    /// The contacts of the state as it is, those with copies on each side. Collective.
+    std::vector<dem::LoadedContact> loaded_contacts();
     /// Collective.
     GrainTotals totals() const;
 
@@ -106,6 +113,8 @@ class GrainSimulation {
     void list_contacts(const std::vector<dem::ContactRecord>& records, double time);
     void evaluate(double time_step);
     void finish(double kick_step);
+    void settle();
+    double remaining_motion(double time_step) const;
     std::vector<dem::WallPose> poses_at(double time) const;
     bool walls_move() const;
     void refuse_not_finite();
@@ -129,6 +138,8 @@ class GrainSimulation {
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;
+    int quiet_looks_ = 0;  ///< in a row, while grains settle
+    std::vector<std::string> notes_;
     std::string fault_;
     std::uint64_t evaluated_ = 0, lists_ = 0;
     Phases phases_;

@@ -102,9 +102,15 @@ ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fiel
     return contacts;
 }
 
+std::uint64_t contact_row_id(std::uint64_t first, std::uint64_t rank) {
+    constexpr int bits_of_rank = 20;
+    if (first >> (64 - bits_of_rank) != 0 || rank >> bits_of_rank != 0)
+        throw std::runtime_error("contacts of ids from 2^44 on, or more than 2^20 of a grain");
+    return first << bits_of_rank | rank;
+}
+
 ParticleSet saved_contacts(std::vector<ContactRecord> saved, int dimension,
                            std::span<const FieldInfo* const> fields) {
-    constexpr int bits_of_rank = 20;
     std::sort(saved.begin(), saved.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.first != b.first ? a.first < b.first : a.second < b.second;
     });
@@ -113,9 +119,7 @@ ParticleSet saved_contacts(std::vector<ContactRecord> saved, int dimension,
     std::uint64_t rank = 0;
     for (std::size_t k = 0; k < saved.size(); ++k) {
         rank = k > 0 && saved[k].first == saved[k - 1].first ? rank + 1 : 0;
-        if (saved[k].first >> (64 - bits_of_rank) != 0 || rank >> bits_of_rank != 0)
-            throw std::runtime_error("contacts of ids from 2^44 on, or more than 2^20 of a grain");
-        contacts.data(field::id)[k] = saved[k].first << bits_of_rank | rank;
+        contacts.data(field::id)[k] = contact_row_id(saved[k].first, rank);
         contacts.data(field::first_id)[k] = saved[k].first;
         contacts.data(field::second_id)[k] = saved[k].second;
     }

@@ -44,8 +44,12 @@ void follow_grains(const Communicator& comm, const Decomposition& decomposition,
 /// An empty set of contacts; `fields` hold what they remember.
 ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fields);
 
+/// Id of the row of a contact among those of its first grain, numbered from 0. Throws std::runtime_error for
+/// ids from 2^44 on.
+std::uint64_t contact_row_id(std::uint64_t first, std::uint64_t rank);
+
 /// The set that a checkpoint saves, of the records whose first grain is this rank's own; row ids order the
-/// contacts by their grains' ids. Throws std::runtime_error for ids from 2^44 on.
+/// contacts by their grains' ids: contact_row_id().
 ParticleSet saved_contacts(std::vector<ContactRecord> records, int dimension,
                            std::span<const FieldInfo* const> fields);
 

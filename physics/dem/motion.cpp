@@ -64,7 +64,7 @@ void predict(ParticleSet& grains, double time_step) {
 }
 
 double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
-                   const Vector3<>& gravity, double kick_step, double time_step) {
+                   const Vector3<>& gravity, double kick_step, double time_step, double remaining) {
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
     const std::array<double, 3> g{gravity.x, gravity.y, gravity.z};
     const Components x = components(grains, field::position), v = components(grains, field::velocity),
@@ -77,9 +77,9 @@ double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Re
         double moved2 = 0;
         for (std::size_t a = 0; a < 3; ++a) {
             const double now = static_cast<double>(sums[i].force[a]) * response + (response > 0 ? g[a] : 0.0);
-            const double velocity = v[a][i] + half_kick * (dv[a][i] + now);
+            const double velocity = remaining * (v[a][i] + half_kick * (dv[a][i] + now));
             const double turn = static_cast<double>(sums[i].torque[a]) * angular;
-            w[a][i] += half_kick * (dw[a][i] + turn);
+            w[a][i] = remaining * (w[a][i] + half_kick * (dw[a][i] + turn));
             v[a][i] = velocity;
             dv[a][i] = now;
             dw[a][i] = turn;

@@ -46,10 +46,11 @@ struct Responses {
     std::array<std::vector<double>, 3> start;  ///< where each grain was at the time [m]
 };
 
-/// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`. Returns
+/// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`, then times
+/// `remaining`, which is 1 unless motion is damped. Returns
 /// the square of the largest distance from `responses.start` that a grain will have after the next drift() of
 /// the same time step [m2]; infinite if any value is not finite.
 double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
-                   const Vector3<>& gravity, double kick_step, double time_step);
+                   const Vector3<>& gravity, double kick_step, double time_step, double remaining = 1);
 
 }  // namespace talus::dem

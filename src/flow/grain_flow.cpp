@@ -21,17 +21,6 @@ double sphere_mass(double radius, double density) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density;
 }
 
-Point place_of(const ParticleSet& grains, std::size_t i, const Box& box) {
-    Point place{};
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        place[a] = grains.data(field::position, axis)[i];
-        // Grains are brought back into the box only with a new list, which must not matter.
-        if (box.boundary[a] == Boundary::periodic) place[a] = wrapped(place[a], box.lower[a], box.upper[a]);
-    }
-    return place;
-}
-
 bool overlap(const Box& box, const Point& a, double radius_a, const Point& b, double radius_b) {
     double distance2 = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -155,10 +144,11 @@ void GrainFlow::restore(const std::map<std::string, double>& numbers, const Part
         expected += came_[s].count;
     }
     if (expected != total)
-        throw AgreedError(1, fmt::format("the checkpoint holds {} grains; those that the run began with, those "
-                                         "inserted and those deleted come to {}: are its [[sink]] and "
-                                         "[[source]] those of this scene?",
-                                         total, expected));
+        throw AgreedError(1,
+                          fmt::format("the checkpoint holds {} grains; those that the run began with, those "
+                                      "inserted and those deleted come to {}: are its [[sink]] and "
+                                      "[[source]] those of this scene?",
+                                      total, expected));
 }
 
 bool GrainFlow::due(std::uint64_t step) const {
@@ -186,7 +176,7 @@ Decomposition::Ledger GrainFlow::remove(ParticleSet& grains, const FlowMoment& n
     std::vector<std::uint64_t> counts(passed_.size() + 1);  // of each sink; sum of ids
     std::vector<ExactSum> masses(passed_.size());
     for (std::size_t i = 0; i < grains.size(); ++i) {
-        const Point place = place_of(grains, i, grid_.box());
+        const Point place = place_in_box(grains, i, grid_.box());
         const auto taker = std::find_if(acting.begin(), acting.end(), [&](std::size_t s) {
             return !now.held[body[i]] && plan_.sinks[s].region.contains(place);
         });
@@ -285,7 +275,7 @@ Decomposition::Ledger GrainFlow::insert(ParticleSet& grains, const FlowMoment& n
         near.add(candidates[k].place, static_cast<std::uint32_t>(k));
     std::vector<int> blocked(candidates.size());
     for (std::size_t i = 0; i < grains.size(); ++i) {
-        const Point place = place_of(grains, i, box);
+        const Point place = place_in_box(grains, i, box);
         const double radius = grains.data(field::radius)[i];
         near.visit(place, [&](std::uint32_t k) {
             if (overlap(box, place, radius, candidates[k].place, candidates[k].radius)) blocked[k] = 1;

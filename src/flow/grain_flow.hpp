@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -27,17 +28,17 @@ struct GrainSink {
 /// Puts grains into a region at a rate.
 struct GrainSource {
     std::string name;
-    std::uint8_t body = 0;  ///< that they belong to
-    double density = 0;     ///< [kg/m3]
-    BodyShape region;       ///< of their centres
-    double least_radius = 0, greatest_radius = 0;  ///< evenly distributed between [m]
-    Point velocity{}, angular_velocity{};          ///< [m/s], [rad/s]
-    bool by_mass = false;                          ///< `rate` and `total` are masses, not numbers
-    double rate = 0;                               ///< [1/s], [kg/s]
-    double total = 1e300;                          ///< [1], [kg]
-    double begin = 0, end = 1e300;                 ///< [s]
-    std::uint64_t interval = 1;                    ///< steps between insertions
-    int tries = 1;                                 ///< places tried for a grain before it is missed
+    std::uint8_t body = 0;                                   ///< that they belong to
+    double density = 0;                                      ///< [kg/m3]
+    BodyShape region;                                        ///< of their centres
+    double least_radius = 0, greatest_radius = 0;            ///< evenly distributed between [m]
+    Point velocity{}, angular_velocity{};                    ///< [m/s], [rad/s]
+    bool by_mass = false;                                    ///< `rate` and `total` are masses, not numbers
+    double rate = 0;                                         ///< [1/s], [kg/s]
+    double total = std::numeric_limits<double>::infinity();  ///< [1], [kg]
+    double begin = 0, end = 1e300;                           ///< [s]
+    std::uint64_t interval = 1;                              ///< steps between insertions
+    int tries = 1;                                           ///< places tried for a grain before it is missed
 };
 
 /// What comes and goes in a scene.
@@ -59,8 +60,8 @@ struct FlowMoment {
     const dem::Vector3<>& gravity;         ///< [m s-2]
 };
 
-/// Grains that come and go, and the ledger of them. When something happens, and what, follows from time, steps
-/// and places of grains alone: it is the same on any number of ranks and across restarts.
+/// Grains that come and go, and the ledger of them. When something happens, and what, follows from time,
+/// steps and places of grains alone: it is the same on any number of ranks and across restarts.
 class GrainFlow {
   public:
     struct Passed {

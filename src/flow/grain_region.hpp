@@ -1,6 +1,8 @@
 #pragma once
 #include <variant>
 
+#include "domain/box.hpp"
+#include "domain/particles.hpp"
 #include "src/setup/shapes.hpp"
 
 namespace talus {
@@ -15,12 +17,11 @@ struct GrainRegion {
     std::variant<HalfSpace, BodyShape> shape;
     bool outside = false;  ///< all but the shape
 
-    bool contains(const Point& place) const {
-        const auto* half = std::get_if<HalfSpace>(&shape);
-        const bool within = half ? dot(minus(place, half->point), half->normal) < 0
-                                 : talus::contains(std::get<BodyShape>(shape), place, 3);
-        return within != outside;
-    }
+    bool contains(const Point& place) const;
 };
+
+/// Centre of a grain as if it had been brought back into the box: that is done with a new list of pairs,
+/// which must not matter [m].
+Point place_in_box(const ParticleSet& grains, std::size_t i, const Box& box);
 
 }  // namespace talus

@@ -22,7 +22,7 @@ class GrainEvolution : public Evolution {
     void start() override {}  // create() does: overlaps are known only then
     void resume(const RunState& state) override;
     void step() override { simulation_->step(); }
-    std::vector<std::string> news() override { return simulation_->flow().take_notes(); }
+    std::vector<std::string> news() override { return simulation_->take_notes(); }
     double time() const override { return simulation_->time(); }
     double time_step() const override { return simulation_->time_step(); }
     std::uint64_t step_count() const override { return simulation_->step_count(); }
@@ -36,8 +36,9 @@ class GrainEvolution : public Evolution {
     void describe(RunState& state) const override;
     void save(const WriteSets& write) override;
     std::vector<SnapshotField> snapshot_fields() const override;
+    std::vector<SnapshotSet> more_snapshots() override;
     std::vector<CsvColumn> diagnostics_columns() const override;
-    Diagnostics diagnostics() const override;
+    Diagnostics diagnostics() override;
     std::string summary() const override;
     std::string performance() const override;
 
@@ -46,6 +47,7 @@ class GrainEvolution : public Evolution {
 
   private:
     std::vector<std::string> materials() const;
+    bool torques_have_meaning() const;
 
     const Communicator& comm_;
     const Scene& scene_;

@@ -88,7 +88,7 @@ std::vector<CsvColumn> SphEvolution::diagnostics_columns() const {
     return columns;
 }
 
-Diagnostics SphEvolution::diagnostics() const {
+Diagnostics SphEvolution::diagnostics() {
     const Totals t = simulation_->totals();
     std::vector<double> row = {simulation_->time(),
                                simulation_->time_step(),

@@ -41,7 +41,7 @@ class SphEvolution : public Evolution {
     void save(const WriteSets& write) override { write({&simulation_->particles()}); }
     std::vector<SnapshotField> snapshot_fields() const override;
     std::vector<CsvColumn> diagnostics_columns() const override;
-    Diagnostics diagnostics() const override;
+    Diagnostics diagnostics() override;
     std::string summary() const override;
     std::string performance() const override;
     std::string analyse(const std::filesystem::path& folder, const RunState& state) const override;

@@ -26,8 +26,7 @@ void read_times(const Section& table, Item& item) {
     item.begin = table.number("begin", "s", 0.0);
     if (table.has("end")) item.end = table.number("end", "s");
     if (item.end < item.begin) table.error("end", "must not be before begin");
-    item.interval =
-        static_cast<std::uint64_t>(table.integer("interval", usual_interval, 1, 1'000'000'000));
+    item.interval = static_cast<std::uint64_t>(table.integer("interval", usual_interval, 1, 1'000'000'000));
 }
 
 /// One of two keys, of which the second is by mass.
@@ -79,6 +78,45 @@ GrainRegion read_region(const Section& table, const BodyContext& context) {
     }
     region.outside = table.flag("outside", false);
     return region;
+}
+
+std::optional<GrainSettling> read_settling(const Section& root, double time_step, const GrainFlowPlan& flow,
+                                           const std::vector<dem::Wall>& walls) {
+    const Section table = root.section("settle");
+    if (!table.exists()) return {};
+    GrainSettling settling;
+    settling.imbalance = table.number("imbalance", "1", settling.imbalance, positive);
+    settling.lasting = static_cast<int>(table.integer("lasting", settling.lasting, 1, 1'000'000));
+    settling.interval = static_cast<std::uint64_t>(
+        table.integer("interval", static_cast<std::int64_t>(settling.interval), 1, 1'000'000'000));
+    settling.longest = table.number("longest", "s", {}, positive);
+    settling.damping = table.number("damping", "s", settling.damping, {0});
+    if (settling.longest < 2 * static_cast<double>(settling.interval) * time_step)
+        table.error("longest", fmt::format("is shorter than two looks, {:.4g} s",
+                                           2 * static_cast<double>(settling.interval) * time_step));
+    const std::vector<Section> sources = root.sections("source"), tables = root.sections("wall");
+    for (std::size_t s = 0; s < sources.size(); ++s)
+        if (flow.sources[s].begin < 0 && !(flow.sources[s].total < infinity))
+            sources[s].error("begin",
+                             "a source that begins before time 0, while grains settle, must say how "
+                             "much it inserts in all");
+    for (std::size_t w = 0; w < tables.size(); ++w)
+        if (walls[w].motion.begin < 0)
+            tables[w].section("motion").error("begin", "must not be before time 0, while grains settle");
+    return settling;
+}
+
+std::vector<WatchedRegion> read_regions(const Section& root, const BodyContext& context) {
+    std::vector<WatchedRegion> regions;
+    for (const Section& table : root.sections("region")) {
+        WatchedRegion region;
+        region.name = table.text("name", table.path());
+        refuse_same_name(table, regions, region.name);
+        region.shape = read_shape(table, 1, context);
+        region.stress = table.flag("stress", true);
+        regions.push_back(std::move(region));
+    }
+    return regions;
 }
 
 GrainFlowPlan read_flow(const Section& root, const BodyContext& context, GrainLawReader& laws,

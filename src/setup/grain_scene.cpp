@@ -172,6 +172,9 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     if (time_step > limit.greatest)
         table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}",
                                              limit.greatest, limit.reason));
+    std::optional<GrainSettling> settling = read_settling(root, time_step, flow, walls);
+    std::vector<WatchedRegion> regions = read_regions(root, context);
+    const bool write_contacts = root.section("output").flag("contacts", false);
     scene.finish();
     return {.title = title,
             .simulation = {.box = box,
@@ -184,11 +187,14 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
                            .skin = skin,
                            .partition = partition,
                            .rebalance_interval = rebalance_interval,
-                           .flow = std::move(flow)},
+                           .flow = std::move(flow),
+                           .settling = settling},
             .bodies = std::move(bodies),
             .greatest_time_step = limit.greatest,
             .time_step_limit = limit.reason,
             .output = output,
+            .regions = std::move(regions),
+            .write_contacts = write_contacts,
             .warnings = std::move(warnings),
             .seed = seed};
 }

@@ -6,6 +6,7 @@
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
 #include "physics/dem/laws/materials.hpp"
+#include "src/flow/region_statistics.hpp"
 #include "src/grain_simulation.hpp"
 #include "src/setup/packing.hpp"
 #include "src/setup/scene_setup.hpp"
@@ -36,6 +37,8 @@ struct GrainScene {
     double greatest_time_step = 0;  ///< that is stable [s]
     std::string time_step_limit;    ///< what limits it
     OutputPlan output;
+    std::vector<WatchedRegion> regions;
+    bool write_contacts = false;        ///< with snapshots
     std::vector<std::string> warnings;  ///< what is doubtful, but can be used
     std::uint64_t seed = 0;
 };

@@ -113,6 +113,17 @@ GrainSetup come_and_go() {
     return setup;
 }
 
+/// The same rain from before time 0 on, until grains balance somewhat and the floor begins to swing.
+GrainSetup settle_first() {
+    GrainSetup setup = come_and_go();
+    setup.flow.sinks.pop_back();
+    setup.flow.sources[0].begin = -0.1;
+    setup.flow.sources[0].total = 40;
+    setup.settling =
+        GrainSettling{.imbalance = 30, .lasting = 2, .interval = 10, .longest = 0.1, .damping = 0.01};
+    return setup;
+}
+
 std::uint64_t hash_of(const Communicator& comm, GrainSimulation& run) {
     const ParticleSet contacts = run.save();
     return state_hash(comm, run.grains()) * 31 + state_hash(comm, contacts);
@@ -213,11 +224,12 @@ TEST_P(GrainsSameBits, AfterInterruption) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Walls, GrainsSameBits, testing::Values(&on_a_floor, &in_a_drum, &come_and_go),
-                         [](const auto& tested) {
-                             constexpr const char* names[] = {"OnAFloor", "InADrum", "ComeAndGo"};
-                             return names[tested.index];
-                         });
+std::string name_of(const testing::TestParamInfo<MakeSetup>& tested) {
+    const std::vector<std::string> names{"OnAFloor", "InADrum", "ComeAndGo", "SettleFirst"};
+    return names[tested.index];
+}
+INSTANTIATE_TEST_SUITE_P(Setups, GrainsSameBits,
+                         testing::Values(&on_a_floor, &in_a_drum, &come_and_go, &settle_first), &name_of);
 
 TEST(GrainFlow, LedgerHoldsWhatCameAndWent) {
     const Communicator world(MPI_COMM_WORLD);
@@ -237,6 +249,24 @@ TEST(GrainFlow, LedgerHoldsWhatCameAndWent) {
     for (const GrainState& grain : cloud()) first += mass_of(grain);
     EXPECT_NEAR(run.totals().mass, first + rain.mass - gone[0].mass - gone[1].mass, 1e-12 * first)
         << "masses of events, rounded once each";
+}
+
+TEST(GrainFlow, SettlingEndsAtTimeZeroOrWithAnError) {
+    const Communicator world(MPI_COMM_WORLD);
+    GrainSimulation run = prepared(world, &settle_first, {}, grain_set(world, cloud()));
+    run.start();
+    EXPECT_EQ(run.time(), -0.1);
+    while (run.time() < 0) run.step();
+    EXPECT_EQ(run.time(), 0);
+    EXPECT_GT(run.step_count(), 10U);
+    EXPECT_LT(run.step_count(), 100U) << "an interruption at step 1 and another at 101 are on either side";
+    EXPECT_EQ(run.flow().came()[0].count, 40U);
+    GrainSetup strict = settle_first();
+    strict.settling->imbalance = 1e-9;
+    strict.settling->longest = 0.001;
+    GrainSimulation never(world, strict, grain_set(world, cloud()));
+    never.start();
+    EXPECT_THROW(while (never.time() < 0) never.step(), AgreedError);
 }
 
 TEST(GrainFlow, LedgerThatDoesNotAddUpIsRefused) {
