@@ -15,23 +15,6 @@ namespace talus {
 /// after that, fields are refreshed with one message per neighbour rank and phase.
 class Halo {
   public:
-    Halo(const Communicator& comm) : comm_(comm), exchange_(comm) {}
-
-    /// Collective. `own` are the set's own cells in order of key. Makes room in `particles` for the copies
-    /// and returns their cells.
-    std::vector<CellEntry> plan(const CellGrid& grid, const Partition& partition,
-                                std::span<const CellEntry> own, ParticleSet& particles);
-
-    /// Starts refreshing the copies of these fields. The own values must not change until finish().
-    void begin(ParticleSet& particles, std::initializer_list<const FieldInfo*> fields);
-    /// Waits for the copies and puts them in their places.
-    void finish();
-
-    /// Since construction, this rank: messages sent, bytes sent.
-    std::uint64_t messages_sent() const { return messages_sent_; }
-    std::uint64_t bytes_sent() const { return bytes_sent_; }
-
-  private:
     struct SentCell {
         std::uint32_t begin, end;
         Image image;
@@ -46,6 +29,33 @@ class Halo {
         std::vector<Run> slots;  ///< where each cell sent is put, in the sender's order
         std::size_t count = 0;   ///< particles
     };
+
+    Halo(const Communicator& comm) : comm_(comm), exchange_(comm) {}
+
+    /// Collective. `own` are the set's own cells in order of key. Makes room in `particles` for the copies
+    /// and returns their cells.
+    std::vector<CellEntry> plan(const CellGrid& grid, const Partition& partition,
+                                std::span<const CellEntry> own, ParticleSet& particles);
+
+    /// Starts refreshing the copies of these fields. The own values must not change until finish().
+    void begin(ParticleSet& particles, std::initializer_list<const FieldInfo*> fields);
+    /// Waits for the copies and puts them in their places.
+    void finish();
+
+    /// The plan: what goes to which rank, and what comes from where.
+    std::span<const Outgoing> outgoing() const { return outgoing_; }
+    std::span<const Incoming> incoming() const { return incoming_; }
+
+    /// Counts messages that were sent by others along the plan.
+    void count_sent(std::uint64_t messages, std::uint64_t bytes) {
+        messages_sent_ += messages;
+        bytes_sent_ += bytes;
+    }
+    /// Since construction, this rank: messages sent, bytes sent.
+    std::uint64_t messages_sent() const { return messages_sent_; }
+    std::uint64_t bytes_sent() const { return bytes_sent_; }
+
+  private:
     /// One for each of them, kept from plan to plan and never shrunk: new memory is dear.
     using Buffers = std::vector<std::vector<std::byte>>;
 

@@ -46,8 +46,25 @@ void mirror_state(ParticleSet& particles, std::size_t i, int axis) {
     }
 }
 
-void wrap_axis(std::span<double> x, double lower, double upper) {
-    for (double& coordinate : x) coordinate = wrapped(coordinate, lower, upper);
+/// `carried`: coordinates of other points of the same particles.
+void wrap_axis(std::span<double> x, double lower, double upper, std::span<double* const> carried) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        double& coordinate = x[i];
+        if (coordinate >= lower && coordinate < upper) continue;
+        const double before = coordinate;
+        coordinate = wrapped(coordinate, lower, upper);
+        for (double* other : carried) other[i] += coordinate - before;
+    }
+}
+
+/// Coordinates of the points of a particle's state besides its position.
+std::vector<double*> other_points(ParticleSet& particles, std::size_t axis) {
+    std::vector<double*> points;
+    for (Column& column : particles.columns())
+        if (column.info->role == Role::state && column.info->shape == Shape::point &&
+            column.info != &field::position)
+            points.push_back(reinterpret_cast<double*>(column.components[axis].data()));
+    return points;
 }
 
 /// Brings a coordinate back between two walls; true if it was mirrored an odd number of times.
@@ -73,7 +90,7 @@ void apply_boundaries(ParticleSet& particles, const Box& box) {
         const auto a = static_cast<std::size_t>(axis);
         std::span<double> x = particles.own(field::position, axis);
         if (box.boundary[a] == Boundary::periodic) {
-            wrap_axis(x, box.lower[a], box.upper[a]);
+            wrap_axis(x, box.lower[a], box.upper[a], other_points(particles, a));
         } else if (box.boundary[a] == Boundary::reflecting) {
             for (std::size_t i = 0; i < x.size(); ++i)
                 if (reflect(x[i], box.lower[a], box.upper[a])) mirror_state(particles, i, axis);

@@ -10,7 +10,8 @@ double mirror_sign(Shape shape, int component, int dimension, const std::array<b
 /// A coordinate brought into [lower, upper) by whole lengths.
 double wrapped(double coordinate, double lower, double upper);
 
-/// Brings own particles back into the box: across a periodic boundary by whole lengths, across a reflecting
+/// Brings own particles back into the box: across a periodic boundary by whole lengths, with all points of
+/// their state, across a reflecting
 /// one by mirroring the position and every vector and tensor of the particle's state.
 void apply_boundaries(ParticleSet& particles, const Box& box);
 

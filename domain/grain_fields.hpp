@@ -7,13 +7,6 @@ namespace talus::field {
 
 inline constexpr Field<double> angular_acceleration{
     "angular_acceleration", "rad s-2", vector, state, owner, "angular acceleration at the last evaluation"};
-inline constexpr Field<double> predicted_angular_velocity{
-    "predicted_angular_velocity",
-    "rad s-1",
-    vector,
-    work,
-    halo,
-    "angular velocity predicted to the time of evaluation"};
 inline constexpr Field<std::uint64_t> copied_id{"copied_id", "1",  scalar,
                                                 work,        halo, "the id, for copies to have it too"};
 inline constexpr Field<std::uint64_t> first_id{
@@ -32,6 +25,31 @@ inline constexpr Field<double> contact_force{
     "contact_force", "N", vector, state, owner, "force of the contact on the first grain"};
 inline constexpr Field<double> overlap{
     "overlap", "m", scalar, state, owner, "depth by which the two overlap, negative across a gap"};
-inline constexpr Field<double> twisting{"twisting", "rad", scalar, state, owner, "twist of the contact"};
+inline constexpr Field<double> twisting{"twisting", "rad", scalar,
+                                        state,      owner, "twist of the contact or bond"};
+inline constexpr Field<double> adhering{
+    "adhering", "1", scalar, state, owner, "1 if the surfaces have touched and have not torn since"};
+
+// Of scenes with bonds.
+inline constexpr Field<double> half_step_velocity{
+    "half_step_velocity", "m s-1", vector, work, halo, "velocity at the middle of the step"};
+inline constexpr Field<double> half_step_angular_velocity{"half_step_angular_velocity",
+                                                          "rad s-1",
+                                                          vector,
+                                                          work,
+                                                          halo,
+                                                          "angular velocity at the middle of the step"};
+inline constexpr Field<std::uint64_t> broken_bonds{"broken_bonds", "1",   scalar,
+                                                   state,          owner, "bonds of the grain that broke"};
+inline constexpr Field<double> bond_table{
+    "bond_table", "1", scalar, state, owner, "index of the scene's table that the bond is of"};
+inline constexpr Field<double> rest_length{"rest_length", "m",   scalar,
+                                           state,         owner, "distance of the bonded centres at rest"};
+inline constexpr Field<double> bond_radius{"bond_radius", "m",   scalar,
+                                           state,         owner, "of the section of the bond"};
+inline constexpr Field<double> shearing{
+    "shearing", "m", vector, state, owner, "shear displacement of the bond, as the first grain sees it"};
+inline constexpr Field<double> bending{
+    "bending", "rad", vector, state, owner, "bending angle of the bond, as the first grain sees it"};
 
 }  // namespace talus::field

@@ -63,6 +63,12 @@ inline Lanes load_first(const double* from, std::size_t count) {
     return values;
 }
 
+/// Stores the first `count` lanes; no other values are written.
+inline void store_first(double* to, std::size_t count, const Lanes& values) {
+    if (count >= lane_count) return values.copy_to(to, std::experimental::element_aligned);
+    where(first_lanes(count), values).copy_to(to, std::experimental::element_aligned);
+}
+
 /// Values `c` and `c` + 1 of as many records as there are lanes: the first of each in the lanes of `first`.
 inline void load_two(const std::array<const double*, lane_count>& records, std::size_t c, Lanes& first,
                      Lanes& second) {
@@ -112,6 +118,45 @@ inline void store_two(const std::array<double*, lane_count>& records, std::size_
     for (std::size_t lane = 0; lane < lane_count; ++lane) {
         records[lane][c] = first[lane];
         records[lane][c + 1] = second[lane];
+    }
+#endif
+}
+
+/// Whole numbers in lanes.
+using IntegerLanes = std::experimental::rebind_simd_t<std::int64_t, Lanes>;
+
+/// Adds to values `c` and `c` + 1 of as many records as there are lanes, one after the other: a record may be
+/// there more than once. Values 0 and 2 of a record are aligned to 16 bytes, `c` is even.
+inline void add_two(const std::array<std::int64_t*, lane_count>& records, std::size_t c,
+                    const IntegerLanes& first, const IntegerLanes& second) {
+#ifdef __AVX2__
+    const auto add = [&](std::size_t lane, __m128i values) {
+        auto* at = reinterpret_cast<__m128i*>(records[lane] + c);
+        _mm_store_si128(at, _mm_add_epi64(_mm_load_si128(at), values));
+    };
+#endif
+#ifdef __AVX512VL__
+    const auto a = static_cast<__m512i>(first), b = static_cast<__m512i>(second);
+    const __m512i even = _mm512_unpacklo_epi64(a, b), odd = _mm512_unpackhi_epi64(a, b);
+    add(0, _mm512_castsi512_si128(even));
+    add(1, _mm512_castsi512_si128(odd));
+    add(2, _mm512_extracti64x2_epi64(even, 1));
+    add(3, _mm512_extracti64x2_epi64(odd, 1));
+    add(4, _mm512_extracti64x2_epi64(even, 2));
+    add(5, _mm512_extracti64x2_epi64(odd, 2));
+    add(6, _mm512_extracti64x2_epi64(even, 3));
+    add(7, _mm512_extracti64x2_epi64(odd, 3));
+#elif defined(__AVX2__)
+    const auto a = static_cast<__m256i>(first), b = static_cast<__m256i>(second);
+    const __m256i even = _mm256_unpacklo_epi64(a, b), odd = _mm256_unpackhi_epi64(a, b);
+    add(0, _mm256_castsi256_si128(even));
+    add(1, _mm256_castsi256_si128(odd));
+    add(2, _mm256_extracti128_si256(even, 1));
+    add(3, _mm256_extracti128_si256(odd, 1));
+#else
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+        records[lane][c] += first[lane];
+        records[lane][c + 1] += second[lane];
     }
 #endif
 }

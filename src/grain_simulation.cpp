@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
+#include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
 
 namespace talus {
@@ -19,8 +19,8 @@ std::size_t history_count(const dem::AnyLawTable& laws) {
                       laws);
 }
 
-/// Force of a contact of a grain of this material pressed in by its own radius, the greatest of all partners
-/// [N].
+/// Force of a contact of a grain of this material pressed in by its own radius, or its pull if that is more,
+/// the greatest of all partners [N].
 double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, double radius, double mass) {
     dem::ContactKinematics<double> flat{};
     flat.overlap = flat.effective_radius = radius;
@@ -29,8 +29,11 @@ double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, 
     double greatest = 0;
     std::visit(
         [&](const auto& table) {
-            for (std::size_t other = 0; other < table.pairs.materials(); ++other)
-                greatest = std::max(greatest, table.pairs(material, other).elasticity(flat, 0).normal_force);
+            for (std::size_t other = 0; other < table.pairs.materials(); ++other) {
+                const auto& law = table.pairs(material, other);
+                greatest =
+                    std::max({greatest, law.elasticity(flat, 0).normal_force, law.surface_force(flat)});
+            }
         },
         laws);
     return greatest;
@@ -40,7 +43,7 @@ double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, 
 double largest_radius(const Communicator& comm, const ParticleSet& grains, const GrainFlowPlan& flow) {
     double largest = 0;
     for (const double r : grains.own(field::radius)) largest = std::max(largest, r);
-    for (const GrainSource& source : flow.sources) largest = std::max(largest, source.greatest_radius);
+    for (const GrainSource& source : flow.sources) largest = std::max(largest, source.sizes.greatest);
     return comm.all_max(largest);
 }
 
@@ -55,46 +58,84 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       largest_radius_(largest_radius(comm, grains_, setup_.flow)),
       reach_(dem::greatest_reach(setup_.laws, largest_radius_)),
       flow_(comm, places_.aligned(setup_.box), setup_.flow, largest_radius_),
-      pairs_(history_count(setup_.laws)) {
+      pairs_(history_count(setup_.laws)),
+      bonds_(setup_.bonds),
+      clumps_(setup_.clumps, setup_.held),
+      rows_halo_(comm, dem::GrainRows::width, dem::GrainRows::refreshed) {
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
     decomposition_.expect(grains_);
-    grid_ = std::make_unique<CellGrid>(setup_.box, 2 * largest_radius_ + listed_gap(), 1);
+    // Ranks see all that may act on their grains, and the other ends of their bonds and clumps.
+    const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
+    grid_ = std::make_unique<CellGrid>(
+        setup_.box, std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent()), 1);
+    if (bonds_.in_use())
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
+            grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
 }
 
 void GrainSimulation::add_fields(ParticleSet& grains) {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::angular_velocity, &field::acceleration, &field::angular_acceleration,
-             &field::radius, &field::mass, &field::body, &field::predicted_velocity,
-             &field::predicted_angular_velocity, &field::copied_id})
+             &field::radius, &field::mass, &field::body, &field::copied_id})
         grains.add(*info);
 }
 
+void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
+    add_fields(grains);
+    if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
+}
+
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
-    std::vector<const FieldInfo*> fields{&field::sliding};
-    if (history_count(setup.laws) > 3) fields.push_back(&field::rolling);
-    return fields;
+    const auto fields_of = []<class Table>(const Table&) {
+        std::vector<const FieldInfo*> fields;
+        if (Table::Law::slides) fields.push_back(&field::sliding);
+        if (Table::Law::rolls) fields.push_back(&field::rolling);
+        if (Table::Law::twists) fields.push_back(&field::twisting);
+        if (Table::Law::sticks) fields.push_back(&field::adhering);
+        return fields;
+    };
+    return std::visit(fields_of, setup.laws);
 }
 
 void GrainSimulation::start() {
     flow_.begin(grains_);
     if (setup_.settling) time_ = -setup_.settling->longest;
+    clumps_.start(grains_, places_);
     arrange({}, time_);
-    dem::predict(grains_, 0);
+    if (bonds_.in_use()) join_grains();
     evaluate(0);
     finish(0);
 }
 
+void GrainSimulation::join_grains() {
+    double gap = 0;
+    for (const dem::BondRule& rule : setup_.bonds) gap = std::max(gap, rule.gap * largest_radius_);
+    dem::ContactList near(0);
+    const std::vector<std::uint8_t> one_material(setup_.material.size(), 0);
+    const dem::PairRule rule{.margin = gap,
+                             .largest_radius = largest_radius_,
+                             .material = one_material,
+                             .held = setup_.held,
+                             .materials = 1};
+    dem::list_pairs(grains_, decomposition_.table(), rule, near);
+    bonds_.join(grains_, near);
+    arrange({}, time_);
+}
+
 void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
-                             const ParticleSet& contacts) {
+                             const ParticleSet& contacts, const ParticleSet* bonds) {
     flow_.restore(numbers, grains_);
     if (const auto looks = numbers.find("settle.quiet_looks"); looks != numbers.end())
         quiet_looks_ = static_cast<int>(looks->second);
     time_ = time;
     step_ = last_balance_ = step;
-    arrange(dem::read_contacts(comm_, contacts, history_fields(setup_), grains_), time_);
+    if (bonds)
+        bonds_.adopt(dem::read_pairs<dem::bond_values>(comm_, *bonds, dem::BondList::fields(), grains_));
+    arrange(dem::read_pairs<dem::most_history>(comm_, contacts, history_fields(setup_), grains_), time_);
     outdated_ = true;  // how far grains have moved is not known
 }
 
@@ -102,15 +143,28 @@ void GrainSimulation::step() {
     phases_.enter(Phase::motion);
     auto kept_contacts = exchange_grains();
     dem::drift(grains_, setup_.time_step, places_);
+    clumps_.drift(grains_, setup_.time_step, places_);
     if (outdated_ || kept_contacts)
         arrange(kept_contacts ? std::move(*kept_contacts) : records_of_contacts(), time_ + setup_.time_step);
-    dem::predict(grains_, setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
     finish(setup_.time_step);
     if (time_ < 0) settle();
     phases_.stop();
+}
+
+/// Grains come and go before the step; then the contacts as they were are returned, for the list has to be
+/// made anew. Those of grains that went are not found again.
+std::optional<std::vector<dem::ContactRecord>> GrainSimulation::exchange_grains() {
+    if (!flow_.due(step_)) return {};
+    std::vector<dem::ContactRecord> contacts = records_of_contacts();
+    const std::vector<dem::WallPose> poses = poses_at(time_);
+    const GrainFlow::Change change =
+        flow_.apply(grains_, {time_, step_, places_, setup_.walls, poses, setup_.held, setup_.gravity});
+    if (!change.any()) return {};
+    decomposition_.expect_change(change.added, change.removed);
+    return contacts;
 }
 
 /// Looks whether the grains are quiet; time 0 begins once they have been for long enough.
@@ -134,11 +188,10 @@ void GrainSimulation::settle() {
 }
 
 std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
-    dem::predict(grains_, 0);
-    Halo& halo = decomposition_.halo();
-    halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
-    halo.finish();
-    rows_.update(grains_, 0, grains_.size_with_halo());
+    rows_.predict(grains_, 0);
+    clumps_.predict(grains_, 0, rows_);
+    rows_halo_.begin(rows_.values());
+    rows_halo_.finish(rows_.values());
     std::vector<dem::LoadedContact> contacts = dem::loaded_pairs(rows_, setup_.laws, pairs_);
     at_walls_.append_loads(rows_, setup_.laws, setup_.walls, poses_at(time_), contacts);
     return contacts;
@@ -156,56 +209,57 @@ std::vector<std::string> GrainSimulation::take_notes() {
     return notes;
 }
 
-/// Grains come and go before the step; then the contacts as they were are returned, for the list has to be
-/// made anew. Those of grains that went are not found again.
-std::optional<std::vector<dem::ContactRecord>> GrainSimulation::exchange_grains() {
-    if (!flow_.due(step_)) return {};
-    std::vector<dem::ContactRecord> contacts = records_of_contacts();
-    const std::vector<dem::WallPose> poses = poses_at(time_);
-    const GrainFlow::Change change =
-        flow_.apply(grains_, {time_, step_, places_, setup_.walls, poses, setup_.held, setup_.gravity});
-    if (!change.any()) return {};
-    decomposition_.expect_change(change.added, change.removed);
-    return contacts;
-}
-
 /// Forces and torques of all contacts, those of own grains while copies are on their way.
 void GrainSimulation::evaluate(double time_step) {
+    phases_.enter(Phase::motion);
+    rows_.predict(grains_, time_step);
+    clumps_.predict(grains_, time_step, rows_);
+    if (bonds_.in_use()) {
+        dem::predict_half_step(grains_, time_step);
+        decomposition_.halo().begin(grains_,
+                                    {&field::half_step_velocity, &field::half_step_angular_velocity});
+        decomposition_.halo().finish();
+    }
     phases_.enter(Phase::halo);
-    Halo& halo = decomposition_.halo();
-    halo.begin(grains_, {&field::position, &field::predicted_velocity, &field::predicted_angular_velocity});
+    rows_halo_.begin(rows_.values());
     phases_.enter(Phase::forces);
-    const std::size_t own = grains_.size();
-    rows_.update(grains_, 0, own);
-    sums_.assign(own, {});
-    const dem::Evaluation evaluation{rows_, time_step, static_cast<std::uint32_t>(step_) + 1, sums_,
-                                     largest_radius_};
+    const double approach = 2 * moved_ + 0.001 * setup_.skin;  // and what rounding may add
+    const dem::Evaluation evaluation{rows_, time_step, approach, sums_, largest_radius_};
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
     poses_ = poses_at(time_ + time_step);
     refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
-    halo.finish();
+    rows_halo_.finish(rows_.values());
     phases_.enter(Phase::forces);
-    rows_.update(grains_, own, grains_.size_with_halo());
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
-    evaluated_ += pairs_.touching_count + at_walls_.touches().size();
+    if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
+    evaluated_ += pairs_.now.count + at_walls_.touches().size();
+    if (!clumps_.exists()) return;
+    clumps_.take_forces(grains_, sums_, units_);
+    phases_.enter(Phase::halo);
+    decomposition_.halo().begin(grains_, {&field::sphere_force, &field::sphere_torque});
+    decomposition_.halo().finish();
 }
 
 void GrainSimulation::finish(double kick_step) {
     phases_.enter(Phase::motion);
-    const double moved2 = dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step,
-                                           setup_.time_step, remaining_motion(kick_step));
+    const double moved2 =
+        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step,
+                                  remaining_motion(kick_step)),
+                 clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
     if (!std::isfinite(moved2)) refuse_not_finite();
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
-    std::array<int, 2> flags{walls_moved || moved2 > allowed * allowed, !fault_.empty()};
+    std::array<double, 3> greatest{moved2, walls_moved || bonds_.broken() ? 1.0 : 0.0,
+                                   fault_.empty() ? 0.0 : 1.0};
     phases_.enter(Phase::wait);
-    comm_.all_max(std::span<int>(flags));
-    outdated_ = flags[0] > 0;
-    if (flags[1] > 0) comm_.all_agree(1, fault_);
+    comm_.all_max(std::span<double>(greatest));
+    moved_ = std::sqrt(greatest[0]);
+    outdated_ = moved_ > allowed || greatest[1] > 0;
+    if (greatest[2] > 0) comm_.all_agree(1, fault_);
 }
 
 /// Factor by which damping makes velocities smaller in a step, 1 once grains have settled.
@@ -230,12 +284,24 @@ void GrainSimulation::refuse_not_finite() {
     fault_ += fmt::format("grain {} moves too fast to follow", grains_.data(field::id)[fastest]);
 }
 
+void GrainSimulation::refuse_bond(const dem::BondFault& found) {
+    if (found.kind == dem::BondFault::none || !fault_.empty()) return;
+    fault_ = fmt::format("step {}, time {} s: the bond between grains {} and {} ", step_, time_, found.first,
+                         found.second);
+    fault_ +=
+        found.kind == dem::BondFault::overload
+            ? "bears a force that is not finite, or that strains it by more than 1; a smaller time step?"
+            : fmt::format(
+                  "is longer than {} of its length at rest, which ranks cannot follow; a lower "
+                  "strength, so that it breaks before?",
+                  dem::most_stretched);
+}
+
 void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
     if (!overload.found || !fault_.empty()) return;
     const std::uint64_t* id = grains_.data(field::copied_id);
-    const std::string place = fmt::format(
-        "({:.6g}, {:.6g}, {:.6g}) m", grains_.data(field::position, 0)[overload.first],
-        grains_.data(field::position, 1)[overload.first], grains_.data(field::position, 2)[overload.first]);
+    const double* row = rows_[overload.first];
+    const std::string place = fmt::format("({:.6g}, {:.6g}, {:.6g}) m", row[0], row[1], row[2]);
     const std::string when = fmt::format("step {}, time {} s: ", step_, time_);
     if (overload.behind) {
         fault_ = when + fmt::format("grain {} at {} has left through wall '{}'", id[overload.first], place,
@@ -279,6 +345,11 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
         decomposition_.rebalance(work);
     }
     dem::follow_grains(comm_, decomposition_, *grid_, grains_, records);
+    if (bonds_.in_use()) {
+        std::vector<dem::BondRecord> bonds = bonds_.records();
+        dem::follow_grains(comm_, decomposition_, *grid_, grains_, bonds);
+        bonds_.adopt(bonds);
+    }
     decomposition_.arrange(grains_, *grid_);
     const auto ids = std::as_const(grains_).own(field::id);
     std::copy(ids.begin(), ids.end(), grains_.data(field::copied_id));
@@ -287,6 +358,10 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
     halo.finish();
     describe_grains();
     list_contacts(records, time);
+    if (const std::uint64_t alone = clumps_.find_spheres(grains_);
+        alone != dem::ClumpMotion::everybody && fault_.empty())
+        fault_ = fmt::format("step {}, time {} s: the clump of grain {} is torn apart", step_, time_, alone);
+    moved_ = 0;
     ++lists_;
 }
 
@@ -297,16 +372,16 @@ void GrainSimulation::describe_grains() {
     const std::size_t own = grains_.size(), all = grains_.size_with_halo();
     std::vector<double> units(all);
     for (std::size_t i = 0; i < all; ++i)
-        units[i] =
-            dem::force_unit(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]));
-    rows_.reset(grains_, units);
+        units[i] = dem::force_unit(
+            std::max(force_of_flat_grain(setup_.laws, setup_.material[body[i]], radius[i], mass[i]),
+                     dem::greatest_bond_force(setup_.bonds, radius[i])));
+    rows_.reset(grains_, units, setup_.material);
+    if (clumps_.exists()) units_ = units;
+    sums_.assign(own + 1, {});
     responses_.acceleration.resize(own);
-    responses_.angular.resize(own);
-    for (std::size_t i = 0; i < own; ++i) {
-        const double mobile = setup_.held[body[i]] ? 0.0 : 1.0;
-        responses_.acceleration[i] = mobile * units[i] / mass[i];
-        responses_.angular[i] = mobile * units[i] * radius[i] / (0.4 * mass[i] * radius[i] * radius[i]);
-    }
+    for (std::size_t i = 0; i < own; ++i)
+        responses_.acceleration[i] =
+            setup_.held[body[i]] || clumps_.of_body(body[i]) ? 0.0 : units[i] / mass[i];
     for (int axis = 0; axis < 3; ++axis) {
         const auto x = std::as_const(grains_).own(field::position, axis);
         responses_.start[static_cast<std::size_t>(axis)].assign(x.begin(), x.end());
@@ -316,13 +391,28 @@ void GrainSimulation::describe_grains() {
 void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& records, double time) {
     const std::size_t materials =
         std::visit([](const auto& table) { return table.pairs.materials(); }, setup_.laws);
-    const dem::PairRule rule{listed_gap(), setup_.material, setup_.held, materials};
+    const auto in_clump = clumps_.inner_pairs(grains_);
+    if (bonds_.in_use())
+        if (const auto lost = bonds_.list(grains_))
+            refuse_bond({dem::BondFault::stretched, lost->front(), lost->back()});
+    const auto bonded = bonds_.pairs();
+    dem::PairRule rule{.margin = listed_gap(),
+                       .largest_radius = largest_radius_,
+                       .material = setup_.material,
+                       .held = setup_.held,
+                       .materials = materials};
+    if (in_clump || bonded)
+        rule.left_out = [&](std::uint32_t i, std::uint32_t j) {
+            return (in_clump && in_clump(i, j)) || (bonded && bonded(i, j));
+        };
     dem::list_pairs(grains_, decomposition_.table(), rule, pairs_);
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
-    const auto now = static_cast<std::uint32_t>(step_) + 1;
-    dem::restore_records(map, now, id_of, id_of, pairs_);
+    dem::restore_records(map, id_of, id_of, pairs_);
+    std::vector<std::uint8_t> needed = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
+    bonds_.mark_copies(grains_.size(), needed);
+    rows_halo_.choose(decomposition_.halo(), grains_.size(), needed);
     poses_ = poses_at(time);
     at_walls_.list(grains_, setup_.walls, poses_, rule);
     at_walls_.restore(records, grains_);
@@ -346,15 +436,25 @@ ParticleSet GrainSimulation::save() {
     arrange(records_of_contacts(), time_);
     outdated_ = true;
     phases_.stop();
-    return dem::saved_contacts(records_below(grains_.size()), grains_.dimension(), history_fields(setup_));
+    ParticleSet contacts = dem::empty_contacts(grains_.dimension(), history_fields(setup_));
+    dem::save_pairs(records_below(grains_.size()), history_fields(setup_), contacts);
+    return contacts;
 }
+
+ParticleSet GrainSimulation::saved_bonds() const {
+    ParticleSet bonds = dem::empty_pairs("bonds", grains_.dimension(), dem::BondList::fields());
+    dem::save_pairs(bonds_.records_below(grains_.size()), dem::BondList::fields(), bonds);
+    return bonds;
+}
+
+double GrainSimulation::stable_step_of_bonds() const { return comm_.all_min(bonds_.stable_step(grains_)); }
 
 std::uint64_t GrainSimulation::bytes_of_lists() const {
     std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    bytes += pairs_.bytes() + at_walls_.bytes();
+    bytes += pairs_.bytes() + at_walls_.bytes() + bonds_.bytes() + rows_halo_.bytes();
+    bytes += clumps_.bytes() + units_.capacity() * sizeof(double);
     for (const std::vector<double>* values :
-         {&responses_.acceleration, &responses_.angular, &responses_.start[0], &responses_.start[1],
-          &responses_.start[2]})
+         {&responses_.acceleration, &responses_.start[0], &responses_.start[1], &responses_.start[2]})
         bytes += values->capacity() * sizeof(double);
     return bytes;
 }
@@ -362,80 +462,6 @@ std::uint64_t GrainSimulation::bytes_of_lists() const {
 void GrainSimulation::reset_counters() {
     evaluated_ = lists_ = 0;
     phases_ = {};
-}
-
-GrainTotals GrainSimulation::totals() const {
-    enum Sum { mass, kinetic, rotational, potential, px, py, pz, sum_count };
-    std::vector<ExactSum> sums(sum_count + 6 * setup_.walls.size());
-    double greatest_speed2 = 0;
-    const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
-    const std::uint8_t* body = grains_.data(field::body);
-    const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
-    std::array<std::uint64_t, 3> counts{};  // contacts, at walls, grains that are not held
-    for (std::size_t i = 0; i < grains_.size(); ++i) {
-        double speed2 = 0, spin2 = 0, potential_per_mass = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double v = grains_.data(field::velocity, axis)[i],
-                         w = grains_.data(field::angular_velocity, axis)[i];
-            speed2 += v * v;
-            spin2 += w * w;
-            const auto a = static_cast<std::size_t>(axis);
-            if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
-                potential_per_mass -= g[a] * grains_.data(field::position, axis)[i];
-            sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
-        }
-        sums[mass].add(m[i]);
-        sums[kinetic].add(0.5 * m[i] * speed2);
-        sums[rotational].add(0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
-        sums[potential].add(m[i] * potential_per_mass);
-        greatest_speed2 = std::max(greatest_speed2, speed2);
-        counts[2] += setup_.held[body[i]] ? 0 : 1;
-    }
-    std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
-    for (std::size_t k = 0; k < pairs_.touching_count; ++k) {
-        const std::uint32_t i = pairs_.first[pairs_.touching[k]], j = pairs_.second[pairs_.touching[k]];
-        counts[0] += i < grains_.size() ? 1 : 0;
-        double distance2 = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double* x = grains_.data(field::position, axis);
-            distance2 += (x[i] - x[j]) * (x[i] - x[j]);
-        }
-        greatest[1] = std::max(greatest[1], (r[i] + r[j] - std::sqrt(distance2)) / std::min(r[i], r[j]));
-    }
-    for (const dem::WallTouch& touch : at_walls_.touches()) {
-        greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
-        const dem::Vector3<> force = -touch.load.force;
-        const dem::WallPose& pose = poses_[touch.wall];
-        const dem::Vector3<> torque =
-            cross(touch.point - pose.centre - pose.shift, force) - touch.load.couple;
-        std::size_t sum = sum_count + 6 * touch.wall;
-        for (const double component : {force.x, force.y, force.z, torque.x, torque.y, torque.z})
-            sums[sum++].add(component);
-    }
-    counts[1] = at_walls_.touches().size();
-    ExactSum::all_reduce(comm_, sums);
-    comm_.all_max(std::span<double>(greatest));
-    comm_.all_sum(std::span<std::uint64_t>(counts));
-    const auto mobile = static_cast<double>(std::max<std::uint64_t>(counts[2], 1));
-    std::vector<std::array<double, 3>> wall_forces(setup_.walls.size()), wall_torques(setup_.walls.size());
-    for (std::size_t w = 0; w < wall_forces.size(); ++w)
-        for (std::size_t a = 0; a < 3; ++a) {
-            wall_forces[w][a] = sums[sum_count + 6 * w + a].value();
-            wall_torques[w][a] = sums[sum_count + 6 * w + 3 + a].value();
-        }
-    return {.mass = sums[mass].value(),
-            .kinetic_energy = sums[kinetic].value(),
-            .rotational_energy = sums[rotational].value(),
-            .potential_energy = sums[potential].value(),
-            .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
-            .greatest_speed = greatest[0],
-            .greatest_overlap = greatest[1],
-            .grains = total_grains(),
-            .contacts = counts[0],
-            .wall_contacts = counts[1],
-            .wall_forces = wall_forces,
-            .wall_torques = wall_torques,
-            .coordination = 2 * static_cast<double>(counts[0]) / mobile};
 }
 
 }  // namespace talus

@@ -9,8 +9,11 @@
 
 #include "comm/communicator.hpp"
 #include "comm/decomposition.hpp"
+#include "comm/record_halo.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
+#include "physics/dem/bonds/bond_list.hpp"
+#include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
@@ -23,18 +26,20 @@ namespace talus {
 
 /// Everything that defines a run of grains besides the grains: what a scene says, resolved.
 struct GrainSetup {
-    Box box;                             ///< three-dimensional; open or periodic along each axis
-    dem::AnyLawTable laws;               ///< of all pairs of materials
-    std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
-    std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
+    Box box;                                  ///< three-dimensional; open or periodic along each axis
+    dem::AnyLawTable laws;                    ///< of all pairs of materials
+    std::vector<std::uint8_t> material;       ///< of each body of grains, an index into `laws`
+    std::vector<std::uint8_t> held;           ///< one a body: 1 if its grains never move
+    std::vector<dem::ClumpBody> clumps = {};  ///< one a body, or none at all
     std::vector<dem::Wall> walls;
-    dem::Vector3<> gravity;  ///< [m s-2]
-    double time_step = 0;    ///< the same throughout [s]
-    double skin = 0;         ///< gap up to which pairs are listed [m]; no result depends on it
+    std::vector<dem::BondRule> bonds{};  ///< which grains are joined at the start; most often none
+    dem::Vector3<> gravity;              ///< [m s-2]
+    double time_step = 0;                ///< the same throughout [s]
+    double skin = 0;                     ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
-    int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
-    GrainFlowPlan flow{};
-    std::optional<GrainSettling> settling{};
+    int rebalance_interval = 10;              ///< steps between looks at the imbalance, at least
+    GrainFlowPlan flow{};                     ///< not of scenes with clumps, sinks not of scenes with bonds
+    std::optional<GrainSettling> settling{};  ///< not of scenes with clumps
 };
 
 /// Totals over all grains, exact sums rounded once: the same bits on any number of ranks.
@@ -45,6 +50,7 @@ struct GrainTotals {
     double greatest_speed = 0;
     double greatest_overlap = 0;  ///< over the smaller radius [1]
     std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
+    std::uint64_t bonds = 0, broken_bonds = 0;
     /// Of the grains on each wall at the last evaluation [N], and their torques about the centre of its
     /// motion, which is carried along with it [N m].
     std::vector<std::array<double, 3>> wall_forces, wall_torques;
@@ -59,19 +65,21 @@ class GrainSimulation {
     GrainSimulation(const Communicator& comm, GrainSetup setup, ParticleSet grains);
 
     static void add_fields(ParticleSet& grains);
+    /// The same and what the setup asks for besides.
+    static void add_fields(ParticleSet& grains, const GrainSetup& setup);
     /// What contacts of the setup's law remember.
     static std::vector<const FieldInfo*> history_fields(const GrainSetup& setup);
 
-    /// First evaluation of a new run, at time 0 or where settling begins. Collective.
+    /// Joins grains and makes the first evaluation of a new run, at time 0 or where settling begins.
+    /// Collective.
     void start();
-    /// Goes on from a checkpoint: the grains given to the constructor as they were read, their contacts and
-    /// what save_numbers() added to its state. Collective.
+    /// Goes on from a checkpoint: the grains given to the constructor as they were read, what
+    /// save_numbers() added to its state, their contacts, and their bonds if the setup has any. Collective.
     void resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
-                const ParticleSet& contacts);
+                const ParticleSet& contacts, const ParticleSet* bonds = nullptr);
 
     /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
-    /// all bounds, or a grain that was lost, left through a wall or moves no finite way, or if the grains
-    /// have not settled in time. The step with which they have ends at time 0. Collective.
+    /// all bounds, or a grain that was lost, left through a wall or moves no finite way. Collective.
     void step();
 
     double time() const { return time_; }                  ///< [s]
@@ -79,6 +87,7 @@ class GrainSimulation {
     std::uint64_t step_count() const { return step_; }
     const ParticleSet& grains() const { return grains_; }
     const GrainSetup& setup() const { return setup_; }
+    const dem::ClumpMotion& clumps() const { return clumps_; }
     const Communicator& comm() const { return comm_; }
     const Decomposition& decomposition() const { return decomposition_; }
     /// What came and went.
@@ -101,6 +110,10 @@ class GrainSimulation {
     std::vector<std::string> take_notes();
     /// The contacts of the state as it is, those with copies on each side. Collective.
     std::vector<dem::LoadedContact> loaded_contacts();
+    /// The bonds of this rank's grains, after save().
+    ParticleSet saved_bonds() const;
+    /// Greatest stable step under the bonds that there are [s], infinite without any. Collective.
+    double stable_step_of_bonds() const;
     /// Collective.
     GrainTotals totals() const;
 
@@ -119,6 +132,8 @@ class GrainSimulation {
     bool walls_move() const;
     void refuse_not_finite();
     void refuse_overload(const dem::Overload& overload, bool at_wall);
+    void join_grains();
+    void refuse_bond(const dem::BondFault& found);
     double listed_gap() const { return reach_ + setup_.skin; }
 
     const Communicator& comm_;
@@ -131,13 +146,18 @@ class GrainSimulation {
     GrainFlow flow_;
     dem::ContactList pairs_;
     dem::WallContacts at_walls_;
+    dem::BondList bonds_;
     std::vector<dem::WallPose> poses_;  ///< of the last evaluation, or of the last list
     dem::GrainRows rows_;
+    dem::ClumpMotion clumps_;
+    RecordHalo rows_halo_;
     dem::Responses responses_;
+    std::vector<double> units_;  ///< of force of each grain and copy, if there are clumps [N]
     std::vector<dem::ForceSum> sums_;
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;
+    double moved_ = 0;     ///< no grain of any rank has moved farther since the last list [m]
     int quiet_looks_ = 0;  ///< in a row, while grains settle
     std::vector<std::string> notes_;
     std::string fault_;

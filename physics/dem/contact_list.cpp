@@ -2,79 +2,158 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "domain/grain_fields.hpp"
 #include "domain/lanes.hpp"
+#include "physics/dem/size_levels.hpp"
 
 namespace talus::dem {
 
-void ContactList::clear() {
-    first.clear();
-    second.clear();
-    law.clear();
-    touching_count = own_count = 0;
+void Contacts::reserve(std::size_t more) {
+    constexpr double slack = 1.125;  // less than vectors take by themselves
+    const std::size_t least = count + more + lane_count;
+    if (pair.size() >= least) return;
+    const auto room = std::max(least, static_cast<std::size_t>(slack * static_cast<double>(pair.size())));
+    const auto grow = [room](auto& values) {
+        values.reserve(room);
+        values.resize(room);
+    };
+    grow(pair);
+    for (std::vector<double>& values : history) grow(values);
 }
 
-void ContactList::finish() {
-    last_touch.assign(size(), 0);
-    history.resize(size() * history_count);
-    touching.resize(size() + lane_count);
-    touching_count = 0;
+void Contacts::close() {
+    reserve(1);
+    pair[count] = std::numeric_limits<std::uint32_t>::max();
+    for (std::vector<double>& values : history) values[count] = 0;
 }
 
-void list_pairs(const ParticleSet& grains, const CellTable& table, const PairRule& rule, ContactList& list) {
-    const std::array<const double*, 3> x{grains.data(field::position, 0), grains.data(field::position, 1),
-                                         grains.data(field::position, 2)};
-    const double* radius = grains.data(field::radius);
-    const std::uint8_t* body = grains.data(field::body);
-    const std::uint64_t* id = grains.data(field::copied_id);
-    const auto own = static_cast<std::uint32_t>(grains.size());
+std::size_t Contacts::bytes() const {
+    std::size_t bytes = pair.capacity() * sizeof(std::uint32_t);
+    for (const std::vector<double>& values : history) bytes += values.capacity() * sizeof(double);
+    return bytes;
+}
+
+namespace {
+
+/// Puts pairs into a list, those with copies after those of own grains.
+class ListedPairs {
+  public:
+    ListedPairs(const ParticleSet& grains, const PairRule& rule, ContactList& list)
+        : spheres_(spheres_of(grains)),
+          body_(grains.data(field::body)),
+          id_(grains.data(field::copied_id)),
+          own_(grains.size()),
+          rule_(rule),
+          list_(list) {
+        list_.first.clear();
+        list_.second.clear();
+        list_.chunks.clear();
+        list_.now.clear();
+        list_.before.clear();
+        list_.margin = rule.margin;
+    }
+
+    /// `both_ways`: pairs of own grains come from either side.
+    void add(std::uint32_t i, std::uint32_t j, bool both_ways) {
+        if (i == j || (rule_.held[body_[i]] && rule_.held[body_[j]]) || (i >= own_ && j >= own_)) return;
+        if (rule_.left_out && rule_.left_out(i, j)) return;
+        const bool in_order = id_[i] < id_[j];
+        const Pair pair = in_order ? Pair{i, j} : Pair{j, i};
+        if (i >= own_ || j >= own_)
+            with_copies_.push_back(pair);
+        else if (in_order || !both_ways)
+            chunk_.push_back(pair);
+        if (chunk_.size() == ContactList::chunk_size) put(chunk_);
+    }
+
+    void finish() {
+        if (!chunk_.empty()) put(chunk_);
+        list_.own_chunks = list_.chunks.size();
+        for (const Pair& pair : with_copies_) {
+            chunk_.push_back(pair);
+            if (chunk_.size() == ContactList::chunk_size) put(chunk_);
+        }
+        if (!chunk_.empty()) put(chunk_);
+    }
+
+  private:
     struct Pair {
         std::uint32_t first, second;
     };
-    std::vector<Pair> with_copies;
-    std::vector<std::uint32_t> near;
-    list.clear();
-    const auto add = [&](std::uint32_t first, std::uint32_t second) {
-        list.add(first, second, rule.material[body[first]] * rule.materials + rule.material[body[second]]);
-    };
+
+    /// Appends a chunk, sorted by classes of gaps, which is empty then.
+    void put(std::vector<Pair>& pairs) {
+        std::array<std::uint8_t, ContactList::chunk_size> of_class;
+        ContactList::Chunk chunk{static_cast<std::uint32_t>(list_.size()), {}};
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            of_class[k] = static_cast<std::uint8_t>(list_.class_of(gap(pairs[k])));
+            ++chunk.up_to[of_class[k]];
+        }
+        std::array<std::uint16_t, ContactList::class_count> place{};
+        for (std::size_t c = 1; c < place.size(); ++c) {
+            place[c] = chunk.up_to[c - 1];
+            chunk.up_to[c] = static_cast<std::uint16_t>(chunk.up_to[c] + chunk.up_to[c - 1]);
+        }
+        list_.first.resize(chunk.begin + pairs.size());
+        list_.second.resize(chunk.begin + pairs.size());
+        for (std::size_t k = 0; k < pairs.size(); ++k) {
+            const std::size_t p = chunk.begin + place[of_class[k]]++;
+            list_.first[p] = pairs[k].first;
+            list_.second[p] = pairs[k].second;
+        }
+        list_.chunks.push_back(chunk);
+        pairs.clear();
+    }
+
+    double gap(const Pair& pair) const {
+        double square = 0;
+        for (const double* x : spheres_.x)
+            square += (x[pair.first] - x[pair.second]) * (x[pair.first] - x[pair.second]);
+        return std::sqrt(square) - spheres_.radius[pair.first] - spheres_.radius[pair.second];
+    }
+
+    Spheres spheres_;
+    const std::uint8_t* body_;
+    const std::uint64_t* id_;
+    std::size_t own_;
+    const PairRule& rule_;
+    ContactList& list_;
+    std::vector<Pair> chunk_, with_copies_;
+};
+
+}  // namespace
+
+void list_pairs(const ParticleSet& grains, const CellTable& table, const PairRule& rule, ContactList& list) {
+    ListedPairs pairs(grains, rule, list);
+    if (!SizeLevels::one_is_enough(grains, rule.largest_radius)) {
+        SizeLevels(grains, rule.margin).for_each_pair([&](std::uint32_t i, std::uint32_t j, bool one_level) {
+            pairs.add(i, j, one_level);
+        });
+        return pairs.finish();
+    }
+    const Spheres spheres{
+        {grains.data(field::position, 0), grains.data(field::position, 1), grains.data(field::position, 2)},
+        grains.data(field::radius)};
+    NearSpheres near;
     table.for_each_own(Cells::all, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-        std::size_t room = 0;
-        for (const Run& run : runs) room += run.end - run.begin + lane_count;
-        near.resize(std::max(near.size(), room));
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            std::size_t count = 0;
-            for (const Run& run : runs)
-                for (std::uint32_t k = run.begin; k < run.end; k += lane_count) {
-                    std::array<std::uint32_t, lane_count> place;
-                    for (std::uint32_t lane = 0; lane < lane_count; ++lane)
-                        place[lane] = std::min(k + lane, run.end - 1);
-                    const bool whole = k + lane_count <= run.end;
-                    const auto values = [&](const double* from) {
-                        return whole ? load(from + k) : Lanes([&](auto lane) { return from[place[lane]]; });
-                    };
-                    const Lanes limit = values(radius) + (radius[i] + rule.margin);
-                    Lanes excess = -(limit * limit);
-                    for (const double* along : x) {
-                        const Lanes r = values(along) - along[i];
-                        excess += r * r;
-                    }
-                    if (!whole) excess = select(first_lanes(run.end - k), excess, Lanes(1.0));
-                    count += keep_negative(excess, place.data(), near.data() + count);
-                }
-            for (std::size_t k = 0; k < count; ++k) {
-                const std::uint32_t j = near[k];
-                if (j == i || (rule.held[body[i]] && rule.held[body[j]])) continue;
-                if (j >= own)
-                    with_copies.push_back(id[i] < id[j] ? Pair{i, j} : Pair{j, i});
-                else if (id[i] < id[j])
-                    add(i, j);
-            }
+            const std::array<double, 3> place{spheres.x[0][i], spheres.x[1][i], spheres.x[2][i]};
+            for (const std::uint32_t j : near(spheres, runs, place, spheres.radius[i] + rule.margin))
+                pairs.add(i, j, true);
         }
     });
-    list.own_count = list.size();
-    for (const Pair& pair : with_copies) add(pair.first, pair.second);
-    list.finish();
+    pairs.finish();
+}
+
+std::vector<std::uint8_t> copies_in(const ContactList& list, std::size_t own, std::size_t copies) {
+    std::vector<std::uint8_t> found(copies, 0);
+    for (std::size_t p = list.own_count(); p < list.size(); ++p)
+        for (const std::uint32_t i : {list.first[p], list.second[p]})
+            if (i >= own) found[i - own] = 1;
+    return found;
 }
 
 }  // namespace talus::dem

@@ -15,9 +15,9 @@ enum class Pairs : std::uint8_t { own, with_copies };
 /// What all contacts of one evaluation have in common.
 struct Evaluation {
     const GrainRows& rows;
-    double time_step;   ///< that histories advance by [s]
-    std::uint32_t now;  ///< number of the evaluation; contacts that did not touch at the last begin anew
-    std::span<ForceSum> sums;  ///< of the own grains
+    double time_step;          ///< that histories advance by [s]
+    double approach;           ///< no two grains have come nearer by more since the pairs were listed [m]
+    std::span<ForceSum> sums;  ///< of the own grains, and one behind for all others
     double largest_radius;     ///< [m]
 };
 
@@ -31,8 +31,14 @@ struct Overload {
 /// Greatest gap across which any pair of grains up to a radius may act [m].
 double greatest_reach(const AnyLawTable& laws, double largest_radius);
 
+/// evaluate_pairs() for laws of these two parts.
+template <class Elasticity, class SurfaceForce>
+Overload evaluate_family(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
+                         ContactList& list);
+
 /// Finds the pairs that touch and adds their forces to both sides, as far as those are own grains. A pair
-/// with a copy is computed by both ranks, with the same bits.
+/// with a copy is computed by both ranks, with the same bits. Contacts that did not touch at the last
+/// evaluation begin anew. Pairs of own grains come first, then those with copies.
 Overload evaluate_pairs(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,
                         ContactList& list);
 

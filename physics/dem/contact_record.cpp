@@ -38,10 +38,13 @@ const ContactRecord* ContactRecordMap::find(std::uint64_t first, std::uint64_t s
 
 namespace {
 
-using Parcels = std::map<int, std::vector<ContactRecord>>;
+template <std::size_t count>
+using Parcels = std::map<int, std::vector<PairRecord<count>>>;
 
 /// Records that other ranks sent, appended.
-void exchange(const Communicator& comm, const Parcels& leaving, std::vector<ContactRecord>& records) {
+template <std::size_t count>
+void exchange(const Communicator& comm, const Parcels<count>& leaving,
+              std::vector<PairRecord<count>>& records) {
     std::vector<Parcel> outgoing;
     for (const auto& [rank, sent] : leaving) {
         const auto bytes = std::as_bytes(std::span(sent));
@@ -49,15 +52,16 @@ void exchange(const Communicator& comm, const Parcels& leaving, std::vector<Cont
     }
     for (const Parcel& parcel : SparseExchange(comm)(std::move(outgoing))) {
         const std::size_t before = records.size();
-        records.resize(before + parcel.bytes.size() / sizeof(ContactRecord));
+        records.resize(before + parcel.bytes.size() / sizeof(PairRecord<count>));
         std::memcpy(records.data() + before, parcel.bytes.data(), parcel.bytes.size());
     }
 }
 
 }  // namespace
 
+template <std::size_t count>
 void follow_grains(const Communicator& comm, const Decomposition& decomposition, const CellGrid& grid,
-                   const ParticleSet& grains, std::vector<ContactRecord>& records) {
+                   const ParticleSet& grains, std::vector<PairRecord<count>>& records) {
     if (comm.size() == 1) return;
     const std::uint64_t* id = grains.data(field::id);
     std::unordered_map<std::uint64_t, int> destination;  // of the grains that leave
@@ -69,9 +73,9 @@ void follow_grains(const Communicator& comm, const Decomposition& decomposition,
         const int owner = decomposition.partition().owner_of(cell);
         if (owner != comm.rank()) destination.emplace(id[i], owner);
     }
-    Parcels leaving;
+    Parcels<count> leaving;
     if (!destination.empty())
-        for (const ContactRecord& record : records) {
+        for (const PairRecord<count>& record : records) {
             const auto first = destination.find(record.first), second = destination.find(record.second);
             const int to_first = first == destination.end() ? comm.rank() : first->second;
             const int to_second = second == destination.end() ? comm.rank() : second->second;
@@ -93,50 +97,52 @@ void for_each_component(Set& contacts, std::span<const FieldInfo* const> fields,
 
 }  // namespace
 
-ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fields) {
-    ParticleSet contacts("contacts", dimension);
-    std::erase_if(contacts.columns(), [](const Column& column) { return column.info == &field::position; });
-    contacts.add(field::first_id);
-    contacts.add(field::second_id);
-    for (const FieldInfo* info : fields) contacts.add(*info);
-    return contacts;
+ParticleSet empty_pairs(const std::string& name, int dimension, std::span<const FieldInfo* const> fields) {
+    ParticleSet pairs(name, dimension);
+    std::erase_if(pairs.columns(), [](const Column& column) { return column.info == &field::position; });
+    pairs.add(field::first_id);
+    pairs.add(field::second_id);
+    for (const FieldInfo* info : fields) pairs.add(*info);
+    return pairs;
 }
 
-std::uint64_t contact_row_id(std::uint64_t first, std::uint64_t rank) {
+ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fields) {
+    return empty_pairs("contacts", dimension, fields);
+}
+
+std::uint64_t pair_row_id(std::uint64_t first, std::uint64_t rank) {
     constexpr int bits_of_rank = 20;
     if (first >> (64 - bits_of_rank) != 0 || rank >> bits_of_rank != 0)
         throw std::runtime_error("contacts of ids from 2^44 on, or more than 2^20 of a grain");
     return first << bits_of_rank | rank;
 }
 
-ParticleSet saved_contacts(std::vector<ContactRecord> saved, int dimension,
-                           std::span<const FieldInfo* const> fields) {
-    std::sort(saved.begin(), saved.end(), [](const ContactRecord& a, const ContactRecord& b) {
-        return a.first != b.first ? a.first < b.first : a.second < b.second;
-    });
-    ParticleSet contacts = empty_contacts(dimension, fields);
-    contacts.resize(saved.size());
+template <std::size_t count>
+void save_pairs(std::vector<PairRecord<count>> records, std::span<const FieldInfo* const> fields,
+                ParticleSet& pairs) {
+    std::sort(records.begin(), records.end(), is_before<count>);
+    pairs.resize(records.size());
     std::uint64_t rank = 0;
-    for (std::size_t k = 0; k < saved.size(); ++k) {
-        rank = k > 0 && saved[k].first == saved[k - 1].first ? rank + 1 : 0;
-        contacts.data(field::id)[k] = contact_row_id(saved[k].first, rank);
-        contacts.data(field::first_id)[k] = saved[k].first;
-        contacts.data(field::second_id)[k] = saved[k].second;
+    for (std::size_t k = 0; k < records.size(); ++k) {
+        rank = k > 0 && records[k].first == records[k - 1].first ? rank + 1 : 0;
+        pairs.data(field::id)[k] = pair_row_id(records[k].first, rank);
+        pairs.data(field::first_id)[k] = records[k].first;
+        pairs.data(field::second_id)[k] = records[k].second;
     }
-    for_each_component(contacts, fields, [&](std::byte* values, std::size_t place) {
-        for (std::size_t k = 0; k < saved.size(); ++k)
-            reinterpret_cast<double*>(values)[k] = saved[k].history[place];
+    for_each_component(pairs, fields, [&](std::byte* values, std::size_t place) {
+        for (std::size_t k = 0; k < records.size(); ++k)
+            reinterpret_cast<double*>(values)[k] = records[k].history[place];
     });
-    return contacts;
 }
 
-std::vector<ContactRecord> read_contacts(const Communicator& comm, const ParticleSet& contacts,
-                                         std::span<const FieldInfo* const> fields,
-                                         const ParticleSet& grains) {
-    std::vector<ContactRecord> rows(contacts.size());
+template <std::size_t count>
+std::vector<PairRecord<count>> read_pairs(const Communicator& comm, const ParticleSet& pairs,
+                                          std::span<const FieldInfo* const> fields,
+                                          const ParticleSet& grains) {
+    std::vector<PairRecord<count>> rows(pairs.size());
     for (std::size_t k = 0; k < rows.size(); ++k)
-        rows[k] = {contacts.data(field::first_id)[k], contacts.data(field::second_id)[k], {}};
-    for_each_component(contacts, fields, [&](const std::byte* values, std::size_t place) {
+        rows[k] = {pairs.data(field::first_id)[k], pairs.data(field::second_id)[k], {}};
+    for_each_component(pairs, fields, [&](const std::byte* values, std::size_t place) {
         for (std::size_t k = 0; k < rows.size(); ++k)
             rows[k].history[place] = reinterpret_cast<const double*>(values)[k];
     });
@@ -149,15 +155,26 @@ std::vector<ContactRecord> read_contacts(const Communicator& comm, const Particl
         const auto after = std::upper_bound(starts.begin(), starts.end(), id);
         return static_cast<int>(std::max<std::ptrdiff_t>(after - starts.begin() - 1, 0));
     };
-    Parcels parcels;
-    for (const ContactRecord& row : rows) {
+    Parcels<count> parcels;
+    for (const PairRecord<count>& row : rows) {
         const int first = holder(row.first), second = holder(row.second);
         parcels[first].push_back(row);
         if (!is_wall_key(row.second) && second != first) parcels[second].push_back(row);
     }
-    std::vector<ContactRecord> records;
+    std::vector<PairRecord<count>> records;
     exchange(comm, parcels, records);
     return records;
 }
+
+template void follow_grains(const Communicator&, const Decomposition&, const CellGrid&, const ParticleSet&,
+                            std::vector<ContactRecord>&);
+template void follow_grains(const Communicator&, const Decomposition&, const CellGrid&, const ParticleSet&,
+                            std::vector<BondRecord>&);
+template void save_pairs(std::vector<ContactRecord>, std::span<const FieldInfo* const>, ParticleSet&);
+template void save_pairs(std::vector<BondRecord>, std::span<const FieldInfo* const>, ParticleSet&);
+template std::vector<ContactRecord> read_pairs(const Communicator&, const ParticleSet&,
+                                               std::span<const FieldInfo* const>, const ParticleSet&);
+template std::vector<BondRecord> read_pairs(const Communicator&, const ParticleSet&,
+                                            std::span<const FieldInfo* const>, const ParticleSet&);
 
 }  // namespace talus::dem

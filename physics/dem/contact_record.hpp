@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "comm/decomposition.hpp"
@@ -10,7 +11,10 @@
 namespace talus::dem {
 
 /// Most values that a contact law remembers.
-inline constexpr std::size_t most_history = 7;
+inline constexpr std::size_t most_history = 8;
+
+/// Values that are kept of a bond.
+inline constexpr std::size_t bond_values = 10;
 
 /// Names a place of a wall where a second grain would be named.
 constexpr std::uint64_t wall_key(std::uint32_t wall, std::uint32_t place) {
@@ -18,11 +22,21 @@ constexpr std::uint64_t wall_key(std::uint32_t wall, std::uint32_t place) {
 }
 constexpr bool is_wall_key(std::uint64_t key) { return key >> 63 != 0; }
 
-/// A contact and what its law remembers, independent of where its grains are stored.
-struct ContactRecord {
+/// A pair and what is remembered of it, independent of where its grains are stored.
+template <std::size_t count>
+struct PairRecord {
     std::uint64_t first, second;  ///< ids in order, or a grain's and a wall_key()
-    std::array<double, most_history> history;
+    std::array<double, count> history;
 };
+using ContactRecord = PairRecord<most_history>;
+/// A bond: index of the scene's table, length at rest and radius [m], and the history of BeamBond.
+using BondRecord = PairRecord<bond_values>;
+
+/// In order of ids.
+template <std::size_t count>
+bool is_before(const PairRecord<count>& a, const PairRecord<count>& b) {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+}
 
 /// Finds records by what touches.
 class ContactRecordMap {
@@ -38,24 +52,31 @@ class ContactRecordMap {
 
 /// Sends the records of the own grains that will move to another rank when `grains` are arranged on the grid
 /// next, and takes up those that come; own ones are kept, even if they are not needed any more. Collective.
+/// This and the following are there for records of contacts and of bonds.
+template <std::size_t count>
 void follow_grains(const Communicator& comm, const Decomposition& decomposition, const CellGrid& grid,
-                   const ParticleSet& grains, std::vector<ContactRecord>& records);
+                   const ParticleSet& grains, std::vector<PairRecord<count>>& records);
 
 /// An empty set of contacts; `fields` hold what they remember.
 ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fields);
+/// The same of another name.
+ParticleSet empty_pairs(const std::string& name, int dimension, std::span<const FieldInfo* const> fields);
 
-/// Id of the row of a contact among those of its first grain, numbered from 0. Throws std::runtime_error for
-/// ids from 2^44 on.
-std::uint64_t contact_row_id(std::uint64_t first, std::uint64_t rank);
+/// Id of the row of a pair among those of its first grain, numbered from 0. Throws std::runtime_error for ids
+/// from 2^44 on.
+std::uint64_t pair_row_id(std::uint64_t first, std::uint64_t rank);
 
-/// The set that a checkpoint saves, of the records whose first grain is this rank's own; row ids order the
-/// contacts by their grains' ids: contact_row_id().
-ParticleSet saved_contacts(std::vector<ContactRecord> records, int dimension,
-                           std::span<const FieldInfo* const> fields);
+/// Fills an empty set as a checkpoint saves it with the records whose first grain is this rank's own; row ids
+/// order the pairs by their grains' ids: pair_row_id().
+template <std::size_t count>
+void save_pairs(std::vector<PairRecord<count>> records, std::span<const FieldInfo* const> fields,
+                ParticleSet& pairs);
 
 /// The reverse: hands the rows of a checkpoint to the ranks that hold the grains they name. `grains` as they
 /// were read from it, in order of id over all ranks. Collective.
-std::vector<ContactRecord> read_contacts(const Communicator& comm, const ParticleSet& contacts,
-                                         std::span<const FieldInfo* const> fields, const ParticleSet& grains);
+template <std::size_t count>
+std::vector<PairRecord<count>> read_pairs(const Communicator& comm, const ParticleSet& pairs,
+                                          std::span<const FieldInfo* const> fields,
+                                          const ParticleSet& grains);
 
 }  // namespace talus::dem

@@ -1,35 +1,54 @@
 #include "physics/dem/grain_rows.hpp"
 
+#include <algorithm>
+
 #include "domain/grain_fields.hpp"
 
 namespace talus::dem {
 
-void GrainRows::reset(const ParticleSet& grains, std::span<const double> units) {
-    values_.resize(grains.size_with_halo() * width);
+void GrainRows::reset(const ParticleSet& grains, std::span<const double> units,
+                      std::span<const std::uint8_t> material) {
+    const std::size_t all = grains.size_with_halo();
+    values_.assign(all * width, 0.0);
+    material_.resize(all);
     const double *radius = grains.data(field::radius), *mass = grains.data(field::mass);
-    for (std::size_t i = 0; i < grains.size_with_halo(); ++i) {
+    const std::uint8_t* body = grains.data(field::body);
+    for (std::size_t i = 0; i < all; ++i) {
         double* row = values_.data() + i * width;
+        for (int axis = 0; axis < 3; ++axis) row[axis] = grains.data(field::position, axis)[i];
         row[3] = radius[i];
-        row[7] = mass[i];
+        row[10] = mass[i];
         row[11] = 1 / units[i];
+        material_[i] = material[body[i]];
     }
 }
 
-void GrainRows::update(const ParticleSet& grains, std::size_t begin, std::size_t end) {
-    std::array<const double*, 3> x, v, w;
+void GrainRows::predict(const ParticleSet& grains, double time_step) {
+    std::array<const double*, 3> x, v, a, w, dw;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        x[a] = grains.data(field::position, axis);
-        v[a] = grains.data(field::predicted_velocity, axis);
-        w[a] = grains.data(field::predicted_angular_velocity, axis);
+        const auto c = static_cast<std::size_t>(axis);
+        x[c] = grains.data(field::position, axis);
+        v[c] = grains.data(field::velocity, axis);
+        a[c] = grains.data(field::acceleration, axis);
+        w[c] = grains.data(field::angular_velocity, axis);
+        dw[c] = grains.data(field::angular_acceleration, axis);
     }
-    for (std::size_t i = begin; i < end; ++i) {
-        double* row = values_.data() + i * width;
-        for (std::size_t a = 0; a < 3; ++a) {
-            row[a] = x[a][i];
-            row[4 + a] = v[a][i];
-            row[8 + a] = w[a][i];
-        }
+    const double* radius = grains.data(field::radius);
+    std::array<double, width> none;  // where lanes without a grain store
+    std::array<double*, lane_count> rows;
+    for (std::size_t i = 0; i < grains.size(); i += lane_count) {
+        const std::size_t count = std::min(lane_count, grains.size() - i);
+        for (std::size_t lane = 0; lane < lane_count; ++lane)
+            rows[lane] = lane < count ? values_.data() + (i + lane) * width : none.data();
+        const auto values = [&](const double* from) { return load_first(from + i, count); };
+        const auto predicted = [&](const double* now, const double* rate) {
+            return values(now) + time_step * values(rate);
+        };
+        store_two(rows, 0, values(x[0]), values(x[1]));
+        store_two(rows, 2, values(x[2]), values(radius));
+        store_two(rows, 4, predicted(v[0], a[0]), predicted(v[1], a[1]));
+        store_two(rows, 6, predicted(v[2], a[2]), predicted(w[0], dw[0]));
+        store_two(rows, 8, predicted(w[1], dw[1]), predicted(w[2], dw[2]));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "physics/dem/motion.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -57,40 +58,59 @@ Components components(ParticleSet& grains, const Field<double>& field) {
 
 }  // namespace
 
-void predict(ParticleSet& grains, double time_step) {
-    predict(grains, time_step, field::velocity, field::acceleration, field::predicted_velocity);
-    predict(grains, time_step, field::angular_velocity, field::angular_acceleration,
-            field::predicted_angular_velocity);
+void predict_half_step(ParticleSet& grains, double time_step) {
+    const double half = 0.5 * time_step;
+    predict(grains, half, field::velocity, field::acceleration, field::half_step_velocity);
+    predict(grains, half, field::angular_velocity, field::angular_acceleration,
+            field::half_step_angular_velocity);
 }
 
-double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
+double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, double kick_step, double time_step, double remaining) {
+    static_assert(sizeof(ForceSum) == 6 * sizeof(double));
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
     const std::array<double, 3> g{gravity.x, gravity.y, gravity.z};
     const Components x = components(grains, field::position), v = components(grains, field::velocity),
                      dv = components(grains, field::acceleration),
                      w = components(grains, field::angular_velocity),
                      dw = components(grains, field::angular_acceleration);
-    double most2 = 0, spoilt = 0;  // 0 unless a value is infinite or NaN
-    for (std::size_t i = 0; i < grains.size(); ++i) {
-        const double response = responses.acceleration[i], angular = responses.angular[i];
-        double moved2 = 0;
+    const double* radius = grains.data(field::radius);
+    const ForceSum none{};
+    Lanes most2 = 0, spoilt = 0;  // 0 unless a value is infinite or NaN
+    for (std::size_t i = 0; i < grains.size(); i += lane_count) {
+        const std::size_t count = std::min(lane_count, grains.size() - i);
+        const auto values = [&](const double* from) { return load_first(from + i, count); };
+        std::array<const double*, lane_count> records;
+        for (std::size_t lane = 0; lane < lane_count; ++lane)
+            records[lane] = reinterpret_cast<const double*>(lane < count ? &sums[i + lane] : &none);
+        std::array<Lanes, 6> summed;  // whole numbers
+        for (std::size_t c = 0; c < 6; c += 2) load_two(records, c, summed[c], summed[c + 1]);
+        const auto sum = [&](std::size_t c) {
+            return std::experimental::static_simd_cast<Lanes>(std::bit_cast<IntegerLanes>(summed[c]));
+        };
+        const Lanes response = values(responses.acceleration.data());
+        const Lanes size = select(first_lanes(count), values(radius), Lanes(1.0));
+        const Lanes angular = response * (2.5 / size);  // over 2/5 m r^2, of units of force times r
+        Lanes moved2 = 0;
         for (std::size_t a = 0; a < 3; ++a) {
-            const double now = static_cast<double>(sums[i].force[a]) * response + (response > 0 ? g[a] : 0.0);
-            const double velocity = remaining * (v[a][i] + half_kick * (dv[a][i] + now));
-            const double turn = static_cast<double>(sums[i].torque[a]) * angular;
-            w[a][i] = remaining * (w[a][i] + half_kick * (dw[a][i] + turn));
-            v[a][i] = velocity;
-            dv[a][i] = now;
-            dw[a][i] = turn;
-            const double moved = x[a][i] + time_step * (velocity + half_step * now) - responses.start[a][i];
+            const Lanes now = sum(a) * response + select(response > 0, Lanes(g[a]), Lanes(0.0));
+            const Lanes velocity = remaining * (values(v[a]) + half_kick * (values(dv[a]) + now));
+            const Lanes turn = sum(3 + a) * angular;
+            const Lanes spin = remaining * (values(w[a]) + half_kick * (values(dw[a]) + turn));
+            store_first(v[a] + i, count, velocity);
+            store_first(w[a] + i, count, spin);
+            store_first(dv[a] + i, count, now);
+            store_first(dw[a] + i, count, turn);
+            const Lanes moved =
+                values(x[a]) + time_step * (velocity + half_step * now) - values(responses.start[a].data());
             moved2 += moved * moved;
-            spoilt += w[a][i] * 0.0;
+            spoilt += spin * 0.0;
         }
         spoilt += moved2 * 0.0;
-        most2 = std::max(most2, moved2);
+        most2 = max(most2, moved2);
     }
-    return spoilt == 0 ? most2 : std::numeric_limits<double>::infinity();
+    std::fill(sums.begin(), sums.end(), ForceSum{});
+    return all_of(spoilt == 0) ? hmax(most2) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace talus::dem

@@ -34,23 +34,21 @@ class PeriodicPlaces {
 /// (1967) 98; W. C. Swope et al., J. Chem. Phys. 76 (1982) 637.
 void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places);
 
-/// Velocities and angular velocities of the end of the step as far as they are known: v + dt a. A contact law
-/// must see velocities of the same time as positions, not those of half a step before: D. Vyas, J. M. Ottino,
-/// R. M. Lueptow, P. B. Umbanhowar, arXiv 2410.14798 (2024).
-void predict(ParticleSet& grains, double time_step);
+/// Velocities and angular velocities of the middle of the step, v + dt/2 a: what springs are stretched by
+/// within the step, to second order. For grains with bonds.
+void predict_half_step(ParticleSet& grains, double time_step);
 
 /// What turns a grain's sums of forces into its acceleration, made anew with the order of grains.
 struct Responses {
     std::vector<double> acceleration;          ///< of one unit of force [m s-2]; 0: the grain is held
-    std::vector<double> angular;               ///< of one unit of torque [rad s-2]
     std::array<std::vector<double>, 3> start;  ///< where each grain was at the time [m]
 };
 
 /// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`, then times
-/// `remaining`, which is 1 unless motion is damped. Returns
+/// `remaining`, which is 1 unless motion is damped. Sets the sums to zero for the next evaluation. Returns
 /// the square of the largest distance from `responses.start` that a grain will have after the next drift() of
 /// the same time step [m2]; infinite if any value is not finite.
-double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
+double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, double kick_step, double time_step, double remaining = 1);
 
 }  // namespace talus::dem

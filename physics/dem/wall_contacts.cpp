@@ -41,9 +41,7 @@ void WallContacts::restore(std::span<const ContactRecord> records, const Particl
     std::vector<ContactRecord> known;
     for (const ContactRecord& record : records)
         if (is_wall_key(record.second)) known.push_back(record);
-    const auto before = [](const ContactRecord& a, const ContactRecord& b) {
-        return a.first != b.first ? a.first < b.first : a.second < b.second;
-    };
+    const auto before = is_before<most_history>;
     std::sort(known.begin(), known.end(), before);
     const std::uint64_t* id = grains.data(field::id);
     for (Near& near : near_) {
@@ -59,21 +57,10 @@ void WallContacts::restore(std::span<const ContactRecord> records, const Particl
 
 namespace {
 
-/// Adds a vector in whole units; false if it is not within range.
-bool add(const Vector3<>& vector, double units_per_force, std::int64_t* sum) {
-    bool bearable = true;
-    for (const double component : {vector.x, vector.y, vector.z}) {
-        const double scaled = component * units_per_force;
-        const bool within = std::abs(scaled) < most_units;
-        *sum++ += within ? static_cast<std::int64_t>(scaled) : 0;
-        bearable = bearable && within;
-    }
-    return bearable;
-}
-
 template <class Law>
 ContactLoad<double> load_of(const Law& law, const ContactKinematics<double>& k,
                             std::array<double, most_history>& remembered) {
+    static_assert(Law::history_count <= most_history);
     typename Law::History history{};
     std::copy_n(remembered.begin(), history.size(), history.begin());
     const ContactLoad<double> load = law(k, history);
@@ -109,8 +96,8 @@ Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable&
                 ForceSum& sum = evaluation.sums[near.grain];
                 const Vector3<> torque =
                     torque_about_centre(k.normal, contact_arm(radius, contact.overlap), load);
-                const bool force_fits = add(load.force, g.units_per_force, sum.force);
-                const bool torque_fits = add(torque, g.units_per_force / radius, sum.torque);
+                const bool force_fits = add_in_units(load.force, g.units_per_force, sum.force);
+                const bool torque_fits = add_in_units(torque, g.units_per_force / radius, sum.torque);
                 const bool behind = !(contact.overlap < radius);
                 if ((behind || !force_fits || !torque_fits) && !overload.found)
                     overload = {true, near.grain, near.wall, behind};

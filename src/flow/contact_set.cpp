@@ -24,7 +24,7 @@ ParticleSet contact_set(std::vector<dem::LoadedContact> contacts, const Particle
     for (std::size_t k = 0; k < contacts.size(); ++k) {
         const dem::LoadedContact& contact = contacts[k];
         rank = k > 0 && contact.first == contacts[k - 1].first ? rank + 1 : 0;
-        set.data(field::id)[k] = dem::contact_row_id(id[contact.first], rank);
+        set.data(field::id)[k] = dem::pair_row_id(id[contact.first], rank);
         set.data(field::first_id)[k] = id[contact.first];
         set.data(field::second_id)[k] = second_id(contact);
         set.data(field::overlap)[k] = contact.overlap;

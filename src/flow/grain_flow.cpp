@@ -206,8 +206,8 @@ RandomStream GrainFlow::random(std::size_t source) const {
 }
 
 double GrainFlow::radius_of(std::size_t source, std::uint64_t attempt) const {
-    const GrainSource& s = plan_.sources[source];
-    return s.least_radius + (s.greatest_radius - s.least_radius) * random(source).uniform(attempt, 0);
+    constexpr std::uint32_t beyond_places = 1U << 31;
+    return plan_.sources[source].sizes.radius(random(source), attempt, beyond_places);
 }
 
 double GrainFlow::amount_of(std::size_t source, double radius) const {
@@ -239,7 +239,7 @@ void GrainFlow::draw_due(std::size_t s, const FlowMoment& now, std::vector<Candi
     const auto draw = [&](std::uint64_t attempt, std::uint32_t number) {
         Point place{};
         for (std::uint32_t a = 0; a < 3; ++a) {
-            const double share = random(s).uniform(attempt, 1 + 3 * number + a);
+            const double share = random(s).uniform(attempt, 3 * number + a);
             place[a] = around.lower[a] + (around.upper[a] - around.lower[a]) * share;
         }
         return place;

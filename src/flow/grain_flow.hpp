@@ -14,6 +14,7 @@
 #include "physics/dem/motion.hpp"
 #include "physics/dem/walls/wall.hpp"
 #include "src/flow/grain_region.hpp"
+#include "src/setup/grain_sizes.hpp"
 
 namespace talus {
 
@@ -28,10 +29,10 @@ struct GrainSink {
 /// Puts grains into a region at a rate.
 struct GrainSource {
     std::string name;
-    std::uint8_t body = 0;                                   ///< that they belong to
-    double density = 0;                                      ///< [kg/m3]
-    BodyShape region;                                        ///< of their centres
-    double least_radius = 0, greatest_radius = 0;            ///< evenly distributed between [m]
+    std::uint8_t body = 0;  ///< that they belong to
+    double density = 0;     ///< [kg/m3]
+    BodyShape region;       ///< of their centres
+    GrainSizes sizes;
     Point velocity{}, angular_velocity{};                    ///< [m/s], [rad/s]
     bool by_mass = false;                                    ///< `rate` and `total` are masses, not numbers
     double rate = 0;                                         ///< [1/s], [kg/s]

@@ -11,8 +11,8 @@ namespace talus {
 
 /// When grains have come to rest before time 0.
 struct GrainSettling {
-    double imbalance = 0.01;  ///< rms force on a grain over rms force of a contact, at most
-    int lasting = 10;         ///< looks in a row that must find it so
+    double imbalance = 0.01;       ///< rms force on a grain over rms force of a contact, at most
+    int lasting = 10;              ///< looks in a row that must find it so
     std::uint64_t interval = 100;  ///< steps between looks
     double longest = 0;            ///< the run begins at minus this time [s]
     double damping = 0;            ///< velocities fall as exp(-t/damping) [s]; 0: they do not

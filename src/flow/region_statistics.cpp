@@ -15,12 +15,20 @@ constexpr std::array<std::array<std::size_t, 2>, 6> stress_axes{
     {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
 
 /// The sums of a region, one after the other.
-enum Sum : std::size_t { mass, volume_of_grains, momentum, flux = momentum + 3, virial = flux + 6, sum_count = virial + 6 };
+enum Sum : std::size_t {
+    mass,
+    volume_of_grains,
+    momentum,
+    flux = momentum + 3,
+    virial = flux + 6,
+    sum_count = virial + 6
+};
 
 /// 1 for each own grain whose centre is in the region.
 std::vector<std::uint8_t> members(const ParticleSet& grains, const Box& box, const BodyShape& shape) {
     std::vector<std::uint8_t> inside(grains.size());
-    for (std::size_t i = 0; i < grains.size(); ++i) inside[i] = contains(shape, place_in_box(grains, i, box), 3);
+    for (std::size_t i = 0; i < grains.size(); ++i)
+        inside[i] = contains(shape, place_in_box(grains, i, box), 3);
     return inside;
 }
 

@@ -29,8 +29,8 @@ struct RegionState {
     std::array<double, 3> velocity{};    ///< of their centre of mass [m/s]
     /// xx, yy, zz, xy, yz, xz, compression positive [Pa]: the symmetric part of
     /// (sum m v'v' - sum r f) / V, v' relative to the mean velocity, r from a grain's centre to each of its
-    /// contacts and f the force there. A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th
-    /// ed. (1927), note B; J. Weber, Bull. Liaison Ponts Chauss. 20 (1966).
+    /// contacts and f the force there. A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity,
+    /// 4th ed. (1927), note B; J. Weber, Bull. Liaison Ponts Chauss. 20 (1966).
     std::array<double, 6> stress{};
 };
 

@@ -47,6 +47,11 @@ void GrainEvolution::create(const std::function<void()>&) {
             "grains",
             fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; allowed: {}",
                         first_overlap_, most));
+    const double stable = simulation_->stable_step_of_bonds();
+    if (simulation_->time_step() > stable)
+        scene_.root().section("dem").error(
+            "time_step", fmt::format("is {} s, above the stable one of the bonds; allowed: at most {:.4g} s",
+                                     simulation_->time_step(), stable));
     scene_.finish();
 }
 
@@ -54,9 +59,15 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
                                     const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
     ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
-    ParticleSet grains = empty_grains();
+    ParticleSet grains = empty_grains(setup_.simulation);
     ParticleSet contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.simulation));
-    found.state = read_checkpoint(comm_, found.file, {&grains, &contacts});
+    std::vector<ParticleSet*> sets{&grains, &contacts};
+    if (has_bonds()) {
+        grains.add(field::broken_bonds);
+        read_bonds_ = dem::empty_pairs("bonds", 3, dem::BondList::fields());
+        sets.push_back(&*read_bonds_);
+    }
+    found.state = read_checkpoint(comm_, found.file, sets);
     if (const std::vector<std::string> wanted = materials(); found.state.materials != wanted)
         throw AgreedError(exit_input_output,
                           fmt::format("{}: is of grains of {}, this scene has {}", found.file.string(),
@@ -68,8 +79,10 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
 }
 
 void GrainEvolution::resume(const RunState& state) {
-    simulation_->resume(state.time, state.step, state.numbers, *read_contacts_);
+    simulation_->resume(state.time, state.step, state.numbers, *read_contacts_,
+                        read_bonds_ ? &*read_bonds_ : nullptr);
     read_contacts_.reset();
+    read_bonds_.reset();
 }
 
 std::vector<std::string> GrainEvolution::materials() const {
@@ -80,7 +93,10 @@ std::vector<std::string> GrainEvolution::materials() const {
 
 void GrainEvolution::save(const WriteSets& write) {
     const ParticleSet contacts = simulation_->save();
-    write({&simulation_->grains(), &contacts});
+    std::vector<const ParticleSet*> sets{&simulation_->grains(), &contacts};
+    std::optional<ParticleSet> bonds;
+    if (has_bonds()) sets.push_back(&bonds.emplace(simulation_->saved_bonds()));
+    write(sets);
 }
 
 void GrainEvolution::describe(RunState& state) const {
@@ -93,6 +109,7 @@ std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::angular_velocity, &field::radius, &field::mass, &field::body})
         fields.push_back({.field = info});
+    if (has_bonds()) fields.push_back({.field = &field::broken_bonds});
     return fields;
 }
 
@@ -123,6 +140,7 @@ std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
                                       {"contacts", "1"},
                                       {"wall_contacts", "1"},
                                       {"coordination", "1"}};
+    if (has_bonds()) columns.insert(columns.end(), {{"bonds", "1"}, {"broken_bonds", "1"}});
     for (const dem::Wall& wall : setup_.simulation.walls)
         for (const char axis : {'x', 'y', 'z'})
             columns.push_back({fmt::format("force_{}_{}", wall.name, axis), "N"});
@@ -152,6 +170,8 @@ Diagnostics GrainEvolution::diagnostics() {
                                static_cast<double>(t.contacts),
                                static_cast<double>(t.wall_contacts),
                                t.coordination};
+    if (has_bonds())
+        row.insert(row.end(), {static_cast<double>(t.bonds), static_cast<double>(t.broken_bonds)});
     for (const auto& force : t.wall_forces) row.insert(row.end(), force.begin(), force.end());
     if (torques_have_meaning())
         for (const auto& torque : t.wall_torques) row.insert(row.end(), torque.begin(), torque.end());

@@ -48,14 +48,15 @@ class GrainEvolution : public Evolution {
   private:
     std::vector<std::string> materials() const;
     bool torques_have_meaning() const;
+    bool has_bonds() const { return !setup_.simulation.bonds.empty(); }
 
     const Communicator& comm_;
     const Scene& scene_;
     GrainScene setup_;
     double end_time_;  ///< [s]
     std::optional<GrainSimulation> simulation_;
-    std::optional<ParticleSet> read_contacts_;  ///< of the checkpoint, until resume()
-    double first_overlap_ = 0;                  ///< over the radius [1]
+    std::optional<ParticleSet> read_contacts_, read_bonds_;  ///< of the checkpoint, until resume()
+    double first_overlap_ = 0;                               ///< over the radius [1]
 };
 
 }  // namespace talus

@@ -43,9 +43,9 @@ GrainSource read_source(const Section& table, const BodyContext& context, GrainB
     GrainSource source;
     source.name = body.name;
     source.density = body.material.density;
-    read_radii(table, body);
-    source.least_radius = body.least_radius;
-    source.greatest_radius = body.greatest_radius;
+    source.sizes = body.sizes = read_grain_sizes(table);
+    body.least_radius = body.sizes.least;
+    body.greatest_radius = body.sizes.greatest;
     source.region = read_shape(table, body.material.density, context);
     source.velocity = body.velocity = origin_default(table, "velocity", "m/s", 3);
     source.angular_velocity = body.angular_velocity = origin_default(table, "angular_velocity", "rad/s", 3);

@@ -8,6 +8,8 @@
 
 #include "domain/grain_fields.hpp"
 #include "domain/random.hpp"
+#include "src/setup/bond_reader.hpp"
+#include "src/setup/clump_reader.hpp"
 #include "src/setup/flow_reader.hpp"
 #include "src/setup/grain_law_reader.hpp"
 #include "src/setup/material_reader.hpp"
@@ -57,31 +59,26 @@ std::vector<std::array<double, 10>> read_list(const Communicator& comm, const Sc
     return rows;
 }
 
-}  // namespace
-
-void read_radii(const Section& table, GrainBody& body) {
-    if (table.has("radii")) {
-        const std::vector<double> radii = table.numbers("radii", "m", 2);
-        if (radii.size() == 2 && 0 < radii[0] && radii[0] <= radii[1]) {
-            body.least_radius = radii[0];
-            body.greatest_radius = radii[1];
-        } else {
-            table.error("radii", "must be two radii above 0 in order");
-        }
-    } else {
-        body.least_radius = body.greatest_radius = table.number("radius", "m", {}, positive);
-    }
-}
-
-namespace {
-
 void read_packing(const Section& table, const BodyContext& context, GrainBody& body) {
-    read_radii(table, body);
+    double reached = 0;  // from a place [m]
+    if (table.has("clump")) {
+        body.clump = read_clump(context.scene, table);
+        body.turned = table.choice("orientation", {"random", "aligned"}, "random") == "random";
+        if (!body.clump) return;
+        const auto [least, greatest] = std::ranges::minmax(body.clump->radii);
+        body.least_radius = least;
+        body.greatest_radius = greatest;
+        reached = body.clump->bounding_radius;
+    } else {
+        body.sizes = read_grain_sizes(table);
+        body.least_radius = body.sizes.least;
+        body.greatest_radius = reached = body.sizes.greatest;
+    }
     body.shape = read_shape(table, body.material.density, context);
     const bool cubic = table.choice("lattice", {"cubic", "close_packed"}, "cubic") == "cubic";
     body.cell = lattice_cell(cubic ? Lattice::cubic : Lattice::close_packed, 3);
     constexpr double room = 1.05;  // between neighbours, in diameters
-    const double touching = 2 * room * body.greatest_radius * (cubic ? 1 : std::pow(2.0, -1.0 / 6));
+    const double touching = 2 * room * reached * (cubic ? 1 : std::pow(2.0, -1.0 / 6));
     body.spacing = table.number("spacing", "m", touching, positive);
     body.jitter = table.number("jitter", "1", 0.0, {0, 1});
     body.velocity = origin_default(table, "velocity", "m/s", 3);
@@ -113,6 +110,30 @@ std::vector<GrainBody> read_bodies(const BodyContext& context, GrainLawReader& l
         bodies.push_back(std::move(body));
     }
     return bodies;
+}
+
+/// For each body what its grains are spheres of; empty if all are spheres of their own.
+std::vector<dem::ClumpBody> clumps_of(const std::vector<GrainBody>& bodies) {
+    std::vector<dem::ClumpBody> clumps;
+    if (std::ranges::none_of(bodies, [](const GrainBody& body) { return body.clump != nullptr; }))
+        return clumps;
+    std::uint64_t first_id = 0;
+    for (const GrainBody& body : bodies) {
+        clumps.push_back({body.clump, first_id, body.material.density});
+        std::uint64_t places = body.listed.size();
+        if (places == 0 && !body.inserted)
+            for_each_point(body.shape, body.cell, body.spacing, 3, [&](const Point&) { ++places; });
+        first_id += places * spheres_of(body);
+    }
+    return clumps;
+}
+
+/// What is not known of clumps and bonds.
+void refuse_together(const Section& root, bool clumps, bool bonds) {
+    for (const char* table : {"sink", "region", "settle"})
+        if (clumps && root.has(table)) root.error(table, "does not go with clumps");
+    if (bonds && root.has("sink"))
+        root.error("sink", "does not go with bonds: a deleted grain would leave its own");
 }
 
 /// Grains that wrap around the box must not meet the same partner, or themselves, on both sides.
@@ -152,36 +173,45 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
                               .seed = seed};
     std::vector<GrainBody> bodies = read_bodies(context, laws, material);
     GrainFlowPlan flow = read_flow(root, context, laws, bodies, material);
-    double greatest = 0;
+    double greatest = 0, widest = 0;
     for (const GrainBody& body : bodies) {
         held.push_back(body.held ? 1 : 0);
         greatest = std::max(greatest, body.greatest_radius);
+        if (body.clump) widest = std::max(widest, body.clump->bounding_radius);
     }
     std::vector<std::string> warnings;
     std::vector<dem::Wall> walls = read_walls({comm, scene, box, greatest}, laws, warnings);
     const Section table = root.section("dem"), run = root.section("run");
     const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
-    check_box(root.section("box"), box, 2 * greatest + skin);
     const OutputPlan output = read_output(root);
     const PartitionMethod partition = read_partition(run);
     const int rebalance_interval = read_rebalance_interval(run);
     const std::vector<double> gravity = table.numbers("gravity", "m s-2", 3, std::vector<double>(3, 0.0));
     laws.read_pairs();
+    const std::vector<dem::BondRule> bonds = read_bonds(root, bodies);
+    const double reach = scene.faulty() ? 0
+                                        : std::max(dem::greatest_reach(laws.table(), greatest),
+                                                   dem::greatest_bond_reach(bonds, greatest));
+    check_box(root.section("box"), box, 2 * std::max(greatest, widest) + reach + skin);
     const GrainTimeStep limit = laws.time_step(bodies);
-    const double time_step = table.number("time_step", "s", limit.usual, positive);
+    const double usual_step = std::min(limit.usual, usual_step_of_bonds(bonds, bodies));
+    const double time_step = table.number("time_step", "s", usual_step, positive);
     if (time_step > limit.greatest)
         table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}",
                                              limit.greatest, limit.reason));
     std::optional<GrainSettling> settling = read_settling(root, time_step, flow, walls);
     std::vector<WatchedRegion> regions = read_regions(root, context);
     const bool write_contacts = root.section("output").flag("contacts", false);
+    refuse_together(root, widest > 0, !bonds.empty());
     scene.finish();
     return {.title = title,
             .simulation = {.box = box,
                            .laws = laws.table(),
                            .material = material,
                            .held = held,
+                           .clumps = clumps_of(bodies),
                            .walls = std::move(walls),
+                           .bonds = bonds,
                            .gravity = {gravity[0], gravity[1], gravity[2]},
                            .time_step = time_step,
                            .skin = skin,
@@ -199,9 +229,9 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
             .seed = seed};
 }
 
-ParticleSet empty_grains() {
+ParticleSet empty_grains(const GrainSetup& setup) {
     ParticleSet grains("grains", 3);
-    GrainSimulation::add_fields(grains);
+    GrainSimulation::add_fields(grains, setup);
     return grains;
 }
 
@@ -220,16 +250,41 @@ std::vector<Row> packed(const GrainBody& body, const RandomStream& random, std::
             row[4 + a] = body.velocity[a];
             row[7 + a] = body.angular_velocity[a];
         }
-        row[3] = body.least_radius + (body.greatest_radius - body.least_radius) * random.uniform(id, 3);
+        row[3] = body.sizes.radius(random, id, 3);
         rows.push_back(row);
     });
     return rows;
 }
 
+/// A rotation as likely as any other: K. Shoemake, in: D. Kirk (ed.), Graphics Gems III (1992) 124.
+dem::Quaternion random_rotation(const RandomStream& random, std::uint64_t id) {
+    const double u = random.uniform(id, 4), a = 2 * std::numbers::pi * random.uniform(id, 5),
+                 b = 2 * std::numbers::pi * random.uniform(id, 6);
+    const double inner = std::sqrt(1 - u), outer = std::sqrt(u);
+    return {outer * std::cos(b), {inner * std::sin(a), inner * std::cos(a), outer * std::sin(b)}};
+}
+
+/// Makes grain i, whose id is `id`, a sphere of the clump at a row's place.
+void make_sphere(ParticleSet& grains, std::size_t i, const dem::ClumpBody& clump, const GrainBody& body,
+                 const Row& row, std::uint64_t id, const RandomStream& random) {
+    const std::uint64_t sphere = clump.sphere(id);
+    const bool moves = !body.held;
+    dem::ClumpState state;
+    state.centre = {row[0], row[1], row[2]};
+    if (body.turned) state.orientation = random_rotation(random, id - sphere);
+    const dem::Vector3<> spin{row[7], row[8], row[9]};
+    if (moves) {
+        state.velocity = {row[4], row[5], row[6]};
+        state.angular_momentum =
+            angular_momentum(spin, clump.inertia(), dem::RotationMatrix(state.orientation));
+    }
+    dem::place_new_sphere(grains, i, clump, sphere, state);
+}
+
 }  // namespace
 
 ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
-    ParticleSet grains = empty_grains();
+    ParticleSet grains = empty_grains(scene.simulation);
     const auto ranks = static_cast<std::uint64_t>(comm.size()),
                rank = static_cast<std::uint64_t>(comm.rank());
     std::uint64_t first_id = 0;
@@ -238,13 +293,19 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
         if (body.inserted) continue;
         const RandomStream random{scene.seed, RandomPurpose::positions, static_cast<std::uint16_t>(b)};
         const std::vector<Row> rows = body.listed.empty() ? packed(body, random, first_id) : body.listed;
-        for (std::size_t k = 0; k < rows.size(); ++k) {
-            if ((first_id + k) % ranks != rank) continue;
+        const std::size_t spheres = spheres_of(body);
+        for (std::size_t k = 0; k < rows.size() * spheres; ++k) {
+            const std::uint64_t id = first_id + k;
+            if (id % ranks != rank) continue;
             const std::size_t i = grains.size();
             grains.resize(i + 1);
-            const Row& row = rows[k];
-            grains.data(field::id)[i] = first_id + k;
+            const Row& row = rows[k / spheres];
+            grains.data(field::id)[i] = id;
             grains.data(field::body)[i] = static_cast<std::uint8_t>(b);
+            if (body.clump) {
+                make_sphere(grains, i, scene.simulation.clumps[b], body, row, id, random);
+                continue;
+            }
             for (int axis = 0; axis < 3; ++axis) {
                 const auto a = static_cast<std::size_t>(axis);
                 grains.data(field::position, axis)[i] = row[a];
@@ -255,7 +316,7 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
             grains.data(field::mass)[i] =
                 4.0 / 3.0 * std::numbers::pi * row[3] * row[3] * row[3] * body.material.density;
         }
-        first_id += rows.size();
+        first_id += rows.size() * spheres;
     }
     return grains;
 }

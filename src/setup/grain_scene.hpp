@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "physics/dem/laws/materials.hpp"
 #include "src/flow/region_statistics.hpp"
 #include "src/grain_simulation.hpp"
+#include "src/setup/grain_sizes.hpp"
 #include "src/setup/packing.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -23,11 +25,18 @@ struct GrainBody {
     UnitCell cell;
     double spacing = 0;  ///< cube root of the volume a grain [m]
     double jitter = 0;   ///< random displacement along each axis, at most, in spacings [1]
-    double least_radius = 0, greatest_radius = 0;  ///< evenly distributed between [m]
+    GrainSizes sizes;
+    double least_radius = 0,
+           greatest_radius = 0;  ///< of the sizes, of the list or of the clump's spheres [m]
+    std::shared_ptr<const dem::ClumpShape> clump;  ///< that each place of the packing gets, if any
+    bool turned = false;                           ///< clumps are, each its own way
     Point velocity{}, angular_velocity{};          ///< [m/s], [rad/s]
     /// Rows of a file in place of all that: x y z, radius, velocity, angular velocity.
     std::vector<std::array<double, 10>> listed;
 };
+
+/// Spheres at each place of a body.
+inline std::size_t spheres_of(const GrainBody& body) { return body.clump ? body.clump->radii.size() : 1; }
 
 /// A scene of grains, read and checked.
 struct GrainScene {
@@ -43,17 +52,14 @@ struct GrainScene {
     std::uint64_t seed = 0;
 };
 
-/// The keys `radius` or `radii` of a body of grains.
-void read_radii(const Section& table, GrainBody& body);
-
 /// Whether the scene is one of grains: it has a table [[grains]] or [[source]].
 bool is_grain_scene(const Scene& scene);
 
 /// Reads everything such a scene says. Throws SceneError (on every rank) with all faults at once. Collective.
 GrainScene read_grain_scene(const Communicator& comm, const Scene& scene);
 
-/// An empty set with the fields that grains need.
-ParticleSet empty_grains();
+/// An empty set with the fields that the scene's grains need.
+ParticleSet empty_grains(const GrainSetup& setup);
 
 /// The scene's grains at time 0, on any ranks. Ids are numbered through in order of the bodies.
 ParticleSet make_grains(const Communicator& comm, const GrainScene& scene);

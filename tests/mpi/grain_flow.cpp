@@ -24,7 +24,8 @@ double hertz(double overlap, double effective_radius) {
     return 4.0 / 3.0 * modulus * std::sqrt(effective_radius) * std::pow(overlap, 1.5);
 }
 
-/// A cubic lattice, periodic along x and y, between two planes that press as hard as the grains on each other.
+/// A cubic lattice, periodic along x and y, between two planes that press as hard as the grains on each
+/// other.
 struct Lattice {
     double length_x = nx * (2 * radius - along_x), length_y = ny * (2 * radius - along_y);
     double at_wall = along_z * std::cbrt(0.5);  // R* = R there, R/2 between grains
@@ -32,7 +33,8 @@ struct Lattice {
 
     GrainSetup setup() const {
         GrainSetup made = grain_setup({rubber}, radius, 1e-6);
-        made.box = {3, {0, 0, 0}, {length_x, length_y, 0}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
+        made.box = {
+            3, {0, 0, 0}, {length_x, length_y, 0}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
         const double top = 2 * lowest + (nz - 1) * spacing;
         made.walls = {{"floor", 0, dem::PlaneShape{{}, {0, 0, 1}}, {}},
                       {"lid", 0, dem::PlaneShape{{0, 0, top}, {0, 0, -1}}, {}}};
@@ -43,7 +45,10 @@ struct Lattice {
         for (int k = 0; k < nx * ny * nz; ++k)
             made.push_back({{(k % nx) * (2 * radius - along_x), (k / nx % ny) * (2 * radius - along_y),
                              lowest + (k / nx / ny) * spacing},
-                            {}, {}, radius, 1000});
+                            {},
+                            {},
+                            radius,
+                            1000});
         return made;
     }
 };
@@ -89,12 +94,16 @@ TEST(GrainStress, OfAGasIsItsFluxOfMomentum) {
     for (int k = 0; k < 64; ++k) {
         const double sign = k % 2 == 0 ? 1 : -1;
         grains.push_back({{0.03 * (k % 4), 0.03 * (k / 4 % 4), 0.03 * (k / 16)},
-                          {3 + 0.2 * sign, -1, 0.1 * sign}, {}, radius, 1000});
+                          {3 + 0.2 * sign, -1, 0.1 * sign},
+                          {},
+                          radius,
+                          1000});
     }
     GrainSimulation run(world, grain_setup({rubber}, radius, 1e-6), grain_set(world, grains));
     run.start();
     const WatchedRegion region{"gas", BoxShape{{-0.01, -0.01, -0.01}, {0.11, 0.11, 0.11}}};
-    const auto state = region_states(world, run.grains(), run.setup().box, 1, {&region, 1}, run.loaded_contacts())[0];
+    const auto state =
+        region_states(world, run.grains(), run.setup().box, 1, {&region, 1}, run.loaded_contacts())[0];
     const double bulk = state.mass / (0.12 * 0.12 * 0.12);
     EXPECT_NEAR(state.mass, 64 * mass_of(grains[0]), 1e-14 * state.mass);
     EXPECT_NEAR(state.solid_fraction, bulk / 1000, 1e-14);

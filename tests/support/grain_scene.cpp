@@ -13,10 +13,10 @@ double mass_of(const GrainState& grain) {
 
 dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials) {
     const dem::MaterialPairs pairs(materials);
-    return dem::LawTable<dem::HertzLaw>{
-        dem::PairTable<dem::HertzLaw<double>>(materials.size(), [&](std::size_t a, std::size_t b) {
+    return dem::LawTable<dem::HertzMindlin>{dem::PairTable<dem::LawTable<dem::HertzMindlin>::Law>(
+        materials.size(), [&](std::size_t a, std::size_t b) {
             const dem::PairProperties pair = pairs(a, b);
-            return dem::HertzLaw<double>{
+            return dem::LawTable<dem::HertzMindlin>::Law{
                 dem::hertz_mindlin(pair, dem::EndOfContact::may_attract), {pair.friction}, {}, {}, {}};
         })};
 }
@@ -56,6 +56,23 @@ ParticleSet grain_set(const Communicator& comm, const std::vector<GrainState>& g
         set.data(field::radius)[i] = grain.radius;
         set.data(field::mass)[i] = mass_of(grain);
         set.data(field::body)[i] = grain.body;
+    }
+    return set;
+}
+
+ParticleSet clump_set(const Communicator& comm, const GrainSetup& setup,
+                      const std::vector<dem::ClumpState>& clumps) {
+    ParticleSet set("grains", 3);
+    GrainSimulation::add_fields(set, setup);
+    const dem::ClumpBody& body = setup.clumps[0];
+    const std::size_t spheres = body.shape->radii.size();
+    for (std::size_t id = 0; id < clumps.size() * spheres; ++id) {
+        if (id % static_cast<std::size_t>(comm.size()) != static_cast<std::size_t>(comm.rank())) continue;
+        const std::size_t i = set.size();
+        set.resize(i + 1);
+        set.data(field::id)[i] = id;
+        set.data(field::body)[i] = 0;
+        dem::place_new_sphere(set, i, body, id % spheres, clumps[id / spheres]);
     }
     return set;
 }

@@ -26,6 +26,10 @@ GrainSetup grain_setup(const std::vector<dem::GrainMaterial>& materials, double 
 /// The grains, ids in order; rank r gets those with k mod size = r.
 ParticleSet grain_set(const Communicator& comm, const std::vector<GrainState>& grains);
 
+/// Clumps of the setup's first body, ids in order; rank r gets the spheres with id mod size = r.
+ParticleSet clump_set(const Communicator& comm, const GrainSetup& setup,
+                      const std::vector<dem::ClumpState>& clumps);
+
 /// State of the grain with this id, which must be on this rank.
 GrainState state_of(const GrainSimulation& simulation, std::uint64_t id);
 

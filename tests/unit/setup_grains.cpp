@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -95,11 +96,56 @@ TEST(SetupGrains, RefusesWhatCannotBe) {
     expect_fault("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"",
                  "[[wall]]\nname = \"floor\"\nmaterial = \"glas\"", "there is no table [materials.glas]");
     expect_fault("radius = 0.001", "radius = 0.001\nrolling_friction = 1", "rolling_friction");
+    expect_fault("gravity =", "adhesion = \"jkr\"\nend_of_contact = \"cut_at_zero\"\ngravity =",
+                 "needs end_of_contact = \"may_attract\"");
+    expect_fault("gravity =", "adhesion = \"jkr\"\nlaw = \"linear\"\nstiffness = 1e5\ngravity =",
+                 "it needs law = \"hertz\"");
+    expect_fault("gravity =", "adhesion = \"jkr\"\ngravity =", "materials.glass.work_of_adhesion (missing");
+    expect_fault("gravity =", "adhesion = \"van_der_waals\"\ngravity =", "dem.separation (missing");
+    expect_fault(
+        "gravity =", "adhesion = \"dmt\"\nfilm = \"viscous\"\ngravity =", "does not go with adhesion");
+    expect_fault(
+        "gravity =", "film = \"viscous\"\nviscosity = 1\nroughness = 1e-5\nfilm_reach = 1e-6\ngravity =",
+        "must be above the roughness");
+    expect_fault(
+        "gravity =", "film = \"viscous\"\nviscosity = 10\nroughness = 1e-5\nfilm_reach = 1e-4\ngravity =",
+        "the limit of the film between a grain of 0.001 m");
+    expect_fault("friction = 0.5", "friction = 0.5\ntwisting_friction = 0.5", "twisting_friction");
     expect_fault("[[wall]]", "[[contact]]\nmaterials = [\"glass\", \"steel\"]\n[[wall]]",
                  "no grains and no wall are of 'steel'");
     expect_fault("friction = 0.5",
                  "friction = 0.5\n[[contact]]\nmaterials = [\"glass\", \"glass\"]\nrestitution = 1.2",
                  "contact[0].restitution = 1.2");
+}
+
+// Eight places, two spheres at each: 1 mm apart, of 1 mm radius.
+TEST(SetupGrains, ClumpsStandAtThePlacesOfAPacking) {
+    const std::string table =
+        "[clumps.pair]\nx = [\"-0.5 mm\", \"0.5 mm\"]\ny = [0, 0]\nz = [0, 0]\nradii = [0.001, 0.001]\n";
+    const auto with = [&](const std::string& key, const std::string& clumps) {
+        return replaced("radius = 0.001", key) + clumps;
+    };
+    const Communicator comm(MPI_COMM_SELF);
+    for (const bool turned : {false, true}) {
+        const GrainScene scene =
+            read(with(turned ? "clump = \"pair\"" : "clump = \"pair\"\norientation = \"aligned\"", table));
+        const ParticleSet grains = make_grains(comm, scene);
+        ASSERT_EQ(grains.size(), 2U * 10 * 10 * 8);
+        const double* x = grains.data(field::position, 0);
+        EXPECT_EQ(std::abs(x[1] - x[0] - 0.001) < 1e-12, !turned);
+        const dem::ClumpBody& clump = scene.simulation.clumps.at(0);
+        // Two balls less the lens that they share, 5 pi/12 r^3.
+        EXPECT_NEAR(clump.mass(), 2500 * (8.0 / 3 - 5.0 / 12) * M_PI * 1e-9, 1e-4 * clump.mass());
+        EXPECT_EQ(grains.data(field::mass)[5], clump.mass());
+    }
+    EXPECT_NE(fault_of(with("clump = \"trio\"", table)).find("there is no table [clumps.trio]"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with("clump = \"pair\"", "[clumps.pair]\nx = [0]\ny = [0]\nz = [0]\nradii = [0]\n"))
+                  .find("lengths above 0"),
+              std::string::npos);
+    EXPECT_NE(fault_of(with("clump = \"pair\"", "[clumps.pair]\nx = [0]\ny = [0]\nz = [0]\nradii = [1, 1]\n"))
+                  .find("clumps.pair.x"),
+              std::string::npos);
 }
 
 // Walls that differ along a periodic axis would be missed by the images of grains.
@@ -119,9 +165,10 @@ const std::string source_text =
 
 TEST(SetupGrains, SourcesAreBodiesOfTheirOwn) {
     std::string text = scene_text;
-    text.insert(text.find("[[wall]]"), source_text + "[[sink]]\nshape = \"plane\"\npoint = [0, 0, 0.01]\n"
-                                                     "normal = [0, 0, 1]\n[[region]]\nname = \"all\"\n"
-                                                     "shape = \"domain\"\n");
+    text.insert(text.find("[[wall]]"), source_text +
+                                           "[[sink]]\nshape = \"plane\"\npoint = [0, 0, 0.01]\n"
+                                           "normal = [0, 0, 1]\n[[region]]\nname = \"all\"\n"
+                                           "shape = \"domain\"\n");
     const Communicator comm(MPI_COMM_SELF);
     const GrainScene scene = read(text);
     ASSERT_EQ(scene.bodies.size(), 2U);
@@ -130,7 +177,7 @@ TEST(SetupGrains, SourcesAreBodiesOfTheirOwn) {
     const GrainFlowPlan& flow = scene.simulation.flow;
     ASSERT_EQ(flow.sources.size(), 1U);
     EXPECT_EQ(flow.sources[0].body, 1);
-    EXPECT_EQ(flow.sources[0].greatest_radius, 0.003);
+    EXPECT_EQ(flow.sources[0].sizes.greatest, 0.003);
     EXPECT_FALSE(flow.sources[0].by_mass);
     EXPECT_EQ(scene.simulation.skin, 0.3 * 0.003) << "for the largest that may come";
     ASSERT_EQ(flow.sinks.size(), 1U);
@@ -158,7 +205,8 @@ TEST(SetupGrains, RefusesSourcesAndSinksThatCannotBe) {
                  "must not be before time 0, while grains settle");
     const std::string sink = "[[sink]]\nshape = \"plane\"\npoint = [0, 0, 0]\n";
     expect_fault("[[wall]]", sink + "normal = [0, 0, 0]\n[[wall]]", "must have a length above 0");
-    expect_fault("[[wall]]", sink + "normal = [1, 0, 0]\n[[wall]]", "must be 0 along x, where the box is periodic");
+    expect_fault("[[wall]]", sink + "normal = [1, 0, 0]\n[[wall]]",
+                 "must be 0 along x, where the box is periodic");
     expect_fault("[[wall]]", "[[sink]]\nshape = \"cylinder\"\n[[wall]]", "sink[0].shape");
 }
 
@@ -232,6 +280,65 @@ TEST_F(MeshWalls, FaultsNameTheFile) {
     expect("kind = \"mesh\"\nfile = \"empty.obj\"", "empty.obj");
     write("closed.obj", tetrahedron(4));
     expect("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = 0", "wall[0].file_unit = 0");
+}
+
+/// What many draws of a distribution give.
+struct Drawn {
+    double least = 1e300, greatest = 0;
+    double volume_below = 0;  ///< share of the volume of radii up to `at`
+    double number_below = 0;  ///< the same of the grains
+};
+
+Drawn drawn(const std::string& keys, double at) {
+    std::string text = replaced("radius = 0.001", keys);
+    text.replace(text.find("3e-6"), 4, "1e-9");
+    const GrainSizes sizes = read(text).bodies[0].sizes;
+    const RandomStream random{7, RandomPurpose::positions, 0};
+    Drawn found;
+    double volume = 0;
+    constexpr std::uint64_t draws = 100000;
+    for (std::uint64_t id = 0; id < draws; ++id) {
+        const double r = sizes.radius(random, id, 3), r3 = r * r * r;
+        found.least = std::min(found.least, r);
+        found.greatest = std::max(found.greatest, r);
+        found.volume_below += r <= at ? r3 : 0;
+        found.number_below += r <= at ? 1.0 / draws : 0;
+        volume += r3;
+    }
+    found.volume_below /= volume;
+    return found;
+}
+
+// Closed forms; 1e5 draws scatter by 1/sqrt(1e5) = 0.003, volume by more: 2.5 of that are allowed, 5 of
+// volume.
+TEST(SetupGrains, SizesAreDistributedAsAskedFor) {
+    Drawn found = drawn("radii = [0.0005, 0.0015]", 0.001);
+    EXPECT_NEAR(found.number_below, 0.5, 0.008);
+    found = drawn("radii = [0.0001, 0.002]\ndistribution = \"volume_uniform\"", 0.00105);
+    EXPECT_NEAR(found.volume_below, 0.5, 0.015);
+    EXPECT_GE(found.least, 0.0001);
+    EXPECT_LE(found.greatest, 0.002);
+    EXPECT_GT(found.greatest, 0.0019);
+    const std::string lognormal = "distribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.5";
+    found = drawn("radii = [1e-6, 0.0021]\n" + lognormal, 0.001);
+    // 0.5 of what is left below ln(2.1)/0.5 = 1.4839 standard deviations, which is 0.93108.
+    EXPECT_NEAR(found.number_below, 0.5 / 0.93108, 0.008);
+    EXPECT_LE(found.greatest, 0.0021);
+    found =
+        drawn("radii = [0.0005, 0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1, 1, 2]", 0.001);
+    EXPECT_NEAR(found.volume_below, 0.5, 0.015);
+    EXPECT_NEAR(found.number_below, 1 - 0.25 / (8 + 1 + 0.25), 0.008);
+}
+
+TEST(SetupGrains, RefusesSizesThatCannotBe) {
+    expect_fault("radius = 0.001", "radii = [0.002, 0.001]",
+                 "grains[0].radii = [0.002, 0.001] (must be two radii above 0 in order)");
+    expect_fault("radius = 0.001", "radii = [0.001, 0.002]\ndistribution = \"normal\"", "distribution");
+    expect_fault("radius = 0.001",
+                 "radii = [0.01, 0.02]\ndistribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.2",
+                 "less than a hundredth");
+    expect_fault("radius = 0.001", "radii = [0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1]",
+                 "as many as radii");
 }
 
 }  // namespace

@@ -30,6 +30,8 @@ struct ContactLaw {
     static constexpr std::size_t vectors_count = Friction::history_count + Rolling::history_count,
                                  displacements_count = vectors_count + Twisting::history_count,
                                  history_count = displacements_count + (Elasticity::sticks ? 1 : 0);
+    static constexpr bool slides = Friction::history_count > 0, rolls = Rolling::history_count > 0,
+                          twists = Twisting::history_count > 0, sticks = Elasticity::sticks;
     using History = std::array<Real, history_count>;
 
     /// Force and couple on the first side; advances the history by the time step. Zero, with a history of

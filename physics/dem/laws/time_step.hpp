@@ -28,4 +28,10 @@ double hertz_tangent_stiffness(double effective_modulus, double effective_radius
 double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
                             double damping_ratio);
 
+/// Greatest stable step of grains that squeeze viscous films (Lubrication) [s]: velocities predicted to the
+/// end of the step bear a damping rate below 1/dt, and a grain between two walls, each with the film at its
+/// least gap, is damped at 2 gamma/m, gamma = 6 pi eta r^2 (1/roughness - 1/reach); closest packing of equal
+/// grains has the same rate.
+double squeezed_film_limit(double mass, double radius, double viscosity, double roughness, double reach);
+
 }  // namespace talus::dem
