@@ -22,6 +22,11 @@ void Decomposition::expect(const ParticleSet& particles) {
     comm_.all_sum(std::span<std::uint64_t>(expected_.sums));
 }
 
+void Decomposition::expect_change(const Ledger& added, const Ledger& removed) {
+    for (std::size_t k = 0; k < expected_.sums.size(); ++k)
+        expected_.sums[k] += added.sums[k] - removed.sums[k];
+}
+
 void Decomposition::arrange(ParticleSet& particles, const CellGrid& grid) {
     migrate(particles, grid);
     sort(particles);

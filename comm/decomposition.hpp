@@ -32,9 +32,20 @@ class Decomposition {
     /// arrange() must follow.
     bool rebalance(std::span<const double> work);
 
-    /// Collective. The number of particles over all ranks, fixed from now on: arrange() checks it.
+    /// Collective. The number of particles over all ranks, which only expect_change() changes from now on:
+    /// arrange() checks it.
     void expect(const ParticleSet& particles);
     std::uint64_t total_particles() const { return expected_.count(); }
+
+    /// Number of particles over all ranks and sum of their ids modulo 2^64.
+    struct Ledger {
+        std::array<std::uint64_t, 2> sums{};
+        std::uint64_t count() const { return sums[0]; }
+        std::uint64_t id_sum() const { return sums[1]; }
+        bool operator==(const Ledger&) const = default;
+    };
+    /// Particles came and went on purpose; the same on every rank.
+    void expect_change(const Ledger& added, const Ledger& removed);
 
     const CellTable& table() const { return table_; }
     const Partition& partition() const { return partition_; }
@@ -47,13 +58,6 @@ class Decomposition {
     int rebalance_count() const { return rebalance_count_; }
 
   private:
-    /// Number of particles and sum of their ids.
-    struct Ledger {
-        std::array<std::uint64_t, 2> sums{};
-        std::uint64_t count() const { return sums[0]; }
-        std::uint64_t id_sum() const { return sums[1]; }
-        bool operator==(const Ledger&) const = default;
-    };
     using BlockWork = std::map<std::uint64_t, double>;
     bool deal(const BlockWork& mine, double least_gain);
     static Ledger count_own(const ParticleSet& particles);

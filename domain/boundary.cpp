@@ -23,6 +23,13 @@ double mirror_sign(Shape shape, int component, int dimension, const std::array<b
     return 1;
 }
 
+double wrapped(double coordinate, double lower, double upper) {
+    if (coordinate >= lower && coordinate < upper) return coordinate;
+    const double length = upper - lower;
+    coordinate -= length * std::floor((coordinate - lower) / length);
+    return coordinate < lower || coordinate >= upper ? lower : coordinate;  // rounding put it on the edge
+}
+
 namespace {
 
 void mirror_state(ParticleSet& particles, std::size_t i, int axis) {
@@ -41,14 +48,11 @@ void mirror_state(ParticleSet& particles, std::size_t i, int axis) {
 
 /// `carried`: coordinates of other points of the same particles.
 void wrap_axis(std::span<double> x, double lower, double upper, std::span<double* const> carried) {
-    const double length = upper - lower;
     for (std::size_t i = 0; i < x.size(); ++i) {
         double& coordinate = x[i];
         if (coordinate >= lower && coordinate < upper) continue;
         const double before = coordinate;
-        coordinate -= length * std::floor((coordinate - lower) / length);
-        if (coordinate >= upper) coordinate = lower;  // rounding put it on the edge
-        if (coordinate < lower) coordinate = lower;
+        coordinate = wrapped(coordinate, lower, upper);
         for (double* other : carried) other[i] += coordinate - before;
     }
 }

@@ -19,6 +19,12 @@ inline constexpr Field<double> sliding{
     state,     owner, "tangential displacement of the contact, as the first grain sees it"};
 inline constexpr Field<double> rolling{
     "rolling", "rad", vector, state, owner, "rolling angle of the contact, as the first grain sees it"};
+inline constexpr Field<double> normal{"normal", "1",   vector,
+                                      state,    owner, "unit vector of the contact to the first grain"};
+inline constexpr Field<double> contact_force{
+    "contact_force", "N", vector, state, owner, "force of the contact on the first grain"};
+inline constexpr Field<double> overlap{
+    "overlap", "m", scalar, state, owner, "depth by which the two overlap, negative across a gap"};
 inline constexpr Field<double> twisting{"twisting", "rad", scalar,
                                         state,      owner, "twist of the contact or bond"};
 inline constexpr Field<double> adhering{

@@ -22,7 +22,14 @@ constexpr std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> c
 }
 
 /// What random numbers are drawn for; different purposes of one seed never share a number.
-enum class RandomPurpose : std::uint16_t { test = 0, flaws = 1, positions = 2, velocities = 3, glass = 4 };
+enum class RandomPurpose : std::uint16_t {
+    test = 0,
+    flaws = 1,
+    positions = 2,
+    velocities = 3,
+    glass = 4,
+    sources = 5
+};
 
 /// Random numbers addressed by (particle id, counter): the same whoever asks, in whichever order.
 struct RandomStream {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
 #include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
@@ -40,6 +39,14 @@ double force_of_flat_grain(const dem::AnyLawTable& laws, std::uint8_t material, 
     return greatest;
 }
 
+/// Of all grains that are or may come [m].
+double largest_radius(const Communicator& comm, const ParticleSet& grains, const GrainFlowPlan& flow) {
+    double largest = 0;
+    for (const double r : grains.own(field::radius)) largest = std::max(largest, r);
+    for (const GrainSource& source : flow.sources) largest = std::max(largest, source.sizes.greatest);
+    return comm.all_max(largest);
+}
+
 }  // namespace
 
 GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, ParticleSet grains)
@@ -48,6 +55,9 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
       setup_(std::move(setup)),
       grains_(std::move(grains)),
       decomposition_(comm, setup_.partition),
+      largest_radius_(largest_radius(comm, grains_, setup_.flow)),
+      reach_(dem::greatest_reach(setup_.laws, largest_radius_)),
+      flow_(comm, places_.aligned(setup_.box), setup_.flow, largest_radius_),
       pairs_(history_count(setup_.laws)),
       bonds_(setup_.bonds),
       clumps_(setup_.clumps, setup_.held),
@@ -55,10 +65,6 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
-    for (const double r : std::as_const(grains_).own(field::radius))
-        largest_radius_ = std::max(largest_radius_, r);
-    largest_radius_ = comm_.all_max(largest_radius_);
-    reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
     if (setup_.box.shear_rate != 0) shear_.emplace(setup_.box, places_, setup_.time_step, largest_radius_);
     decomposition_.expect(grains_);
     // Ranks see all that may act on their grains, and the other ends of their bonds and clumps.
@@ -99,6 +105,8 @@ std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& 
 }
 
 void GrainSimulation::start() {
+    flow_.begin(grains_);
+    if (setup_.settling) time_ = -setup_.settling->longest;
     clumps_.start(grains_, places_);
     arrange({}, time_);
     if (bonds_.in_use()) join_grains();
@@ -121,8 +129,11 @@ void GrainSimulation::join_grains() {
     arrange({}, time_);
 }
 
-void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet& contacts,
-                             const ParticleSet* bonds) {
+void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
+                             const ParticleSet& contacts, const ParticleSet* bonds) {
+    flow_.restore(numbers, grains_);
+    if (const auto looks = numbers.find("settle.quiet_looks"); looks != numbers.end())
+        quiet_looks_ = static_cast<int>(looks->second);
     time_ = time;
     step_ = last_balance_ = step;
     if (shear_) shear_->go_to(step);
@@ -134,20 +145,77 @@ void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet&
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
+    std::optional<std::vector<dem::ContactRecord>> kept_contacts = exchange_grains();
     if (gravity_) gravity_->begin_step(grains_, responses_);
     if (shear_)
         shear_->drift(grains_, setup_.time_step, places_);
     else
         dem::drift(grains_, setup_.time_step, places_);
     clumps_.drift(grains_, setup_.time_step, places_);
-    if (outdated_ || (gravity_ && gravity_->ends_block()))
-        arrange(records_of_contacts(), time_ + setup_.time_step);
+    if (outdated_ || kept_contacts || (gravity_ && gravity_->ends_block()))
+        arrange(kept_contacts ? std::move(*kept_contacts) : records_of_contacts(), time_ + setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
     phases_.enter(Phase::gravity);
     finish(setup_.time_step, gravity_ ? gravity_->end_step(grains_, *grid_, decomposition_) : dem::Impulse{});
+    if (time_ < 0) settle();
     phases_.stop();
+}
+
+/// Grains come and go before the step; then the contacts as they were are returned, for the list has to be
+/// made anew. Those of grains that went are not found again.
+std::optional<std::vector<dem::ContactRecord>> GrainSimulation::exchange_grains() {
+    if (!flow_.due(step_)) return {};
+    std::vector<dem::ContactRecord> contacts = records_of_contacts();
+    const std::vector<dem::WallPose> poses = poses_at(time_);
+    const GrainFlow::Change change =
+        flow_.apply(grains_, {time_, step_, places_, setup_.walls, poses, setup_.held, setup_.gravity});
+    if (!change.any()) return {};
+    decomposition_.expect_change(change.added, change.removed);
+    return contacts;
+}
+
+/// Looks whether the grains are quiet; time 0 begins once they have been for long enough.
+void GrainSimulation::settle() {
+    const GrainSettling& settling = *setup_.settling;
+    if (step_ % settling.interval != 0) return;
+    const double imbalance = force_imbalance(comm_, grains_, setup_.held, loaded_contacts());
+    quiet_looks_ = imbalance <= settling.imbalance && !flow_.inserting(time_) ? quiet_looks_ + 1 : 0;
+    if (quiet_looks_ >= settling.lasting) {
+        notes_.push_back(fmt::format("{} grains settled in {} steps, {:.4g} s; forces balance to {:.2g}",
+                                     total_grains(), step_, time_ + settling.longest, imbalance));
+        time_ = 0;
+        outdated_ = true;  // walls may set out
+    } else if (time_ + static_cast<double>(settling.interval) * setup_.time_step >= 0) {
+        throw AgreedError(1,
+                          fmt::format("step {}: the grains have not settled within {} s: the rms force on a "
+                                      "grain is {:.3g} of that of a contact (settle.imbalance = {}){}",
+                                      step_, settling.longest, imbalance, settling.imbalance,
+                                      flow_.inserting(time_) ? ", and sources are not done" : ""));
+    }
+}
+
+std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
+    rows_.predict(grains_, 0);
+    clumps_.predict(grains_, 0, rows_);
+    rows_halo_.begin(rows_.values());
+    rows_halo_.finish(rows_.values());
+    std::vector<dem::LoadedContact> contacts = dem::loaded_pairs(rows_, setup_.laws, pairs_);
+    at_walls_.append_loads(rows_, setup_.laws, setup_.walls, poses_at(time_), contacts);
+    return contacts;
+}
+
+void GrainSimulation::save_numbers(std::map<std::string, double>& numbers) const {
+    flow_.save(numbers);
+    if (time_ < 0) numbers["settle.quiet_looks"] = quiet_looks_;
+}
+
+std::vector<std::string> GrainSimulation::take_notes() {
+    std::vector<std::string> notes = flow_.take_notes();
+    notes.insert(notes.end(), notes_.begin(), notes_.end());
+    notes_.clear();
+    return notes;
 }
 
 /// Forces and torques of all contacts, those of own grains while copies are on their way.
@@ -186,9 +254,10 @@ void GrainSimulation::evaluate(double time_step) {
 
 void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
     phases_.enter(Phase::motion);
-    double moved2 = std::max(
-        dem::finish_step(grains_, sums_, responses_, setup_.gravity, impulse, kick_step, setup_.time_step),
-        clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
+    double moved2 =
+        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, impulse, kick_step,
+                                  setup_.time_step, remaining_motion(kick_step)),
+                 clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
@@ -203,6 +272,12 @@ void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
     moved_ = std::sqrt(greatest[0]);
     outdated_ = moved_ > allowed || greatest[1] > 0;
     if (greatest[2] > 0) comm_.all_agree(1, fault_);
+}
+
+/// Factor by which damping makes velocities smaller in a step, 1 once grains have settled.
+double GrainSimulation::remaining_motion(double time_step) const {
+    if (!setup_.settling || setup_.settling->damping == 0 || time_ >= 0) return 1;
+    return std::exp(-time_step / setup_.settling->damping);
 }
 
 void GrainSimulation::refuse_not_finite() {
@@ -405,103 +480,6 @@ void GrainSimulation::reset_counters() {
     evaluated_ = lists_ = 0;
     if (gravity_) gravity_->reset_counts();
     phases_ = {};
-}
-
-GrainTotals GrainSimulation::totals() const {
-    enum Sum { mass, kinetic, rotational, potential, px, py, pz, lx, ly, lz, sum_count };
-    std::vector<ExactSum> sums(sum_count + 3 * setup_.walls.size());
-    double greatest_speed2 = 0;
-    const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
-    const std::uint8_t* body = grains_.data(field::body);
-    const double* attraction = gravity_ ? grains_.data(field::gravity_potential) : nullptr;
-    const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
-    // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
-    std::array<std::uint64_t, 5> counts{};
-    for (std::size_t i = 0; i < grains_.size(); ++i) {
-        counts[2] += setup_.held[body[i]] ? 0 : 1;
-        const dem::ClumpBody* clump = clumps_.of_body(body[i]);
-        if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
-        const Field<double>&centre = clump ? field::clump_centre : field::position,
-              &velocity = clump ? field::clump_velocity : field::velocity;
-        double speed2 = 0, spin2 = 0, potential_per_mass = attraction ? 0.5 * attraction[i] : 0;
-        std::array<double, 3> x, p;
-        const double flow = dem::shear_flow(setup_.box, grains_.data(field::position, 1)[i]);
-        for (int axis = 0; axis < 3; ++axis) {
-            const double v = grains_.data(velocity, axis)[i] - (axis == 0 ? flow : 0.0),
-                         w = grains_.data(field::angular_velocity, axis)[i];
-            speed2 += v * v;
-            spin2 += w * w;
-            const auto a = static_cast<std::size_t>(axis);
-            x[a] = grains_.data(centre, axis)[i];
-            p[a] = m[i] * v;
-            if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
-                potential_per_mass -= g[a] * x[a];
-            sums[px + a].add(p[a]);
-            sums[lx + a].add(0.4 * m[i] * r[i] * r[i] * w);
-        }
-        for (std::size_t a = 0; a < 3; ++a) {
-            const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-            sums[lx + a].add(x[b] * p[c] - x[c] * p[b]);
-        }
-        sums[mass].add(m[i]);
-        sums[kinetic].add(0.5 * m[i] * speed2);
-        sums[rotational].add(clump ? clumps_.rotational_energy(grains_, i)
-                                   : 0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
-        sums[potential].add(m[i] * potential_per_mass);
-        greatest_speed2 = std::max(greatest_speed2, speed2);
-        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
-    }
-    std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
-    const auto sticks_at = std::visit(
-        []<class Table>(const Table&) -> std::size_t {
-            return Table::Law::sticks ? Table::Law::history_count : 0;
-        },
-        setup_.laws);
-    // Laws that act across gaps list pairs that only do that.
-    const auto is_contact = [&](double overlap, const auto& remembered) {
-        return reach_ == 0 || overlap > 0 || (sticks_at > 0 && remembered(sticks_at - 1) > 0);
-    };
-    for (std::size_t k = 0; k < pairs_.now.count; ++k) {
-        const std::uint32_t i = pairs_.first[pairs_.now.pair[k]], j = pairs_.second[pairs_.now.pair[k]];
-        double distance2 = 0;
-        for (std::size_t a = 0; a < 3; ++a)
-            distance2 += (rows_[i][a] - rows_[j][a]) * (rows_[i][a] - rows_[j][a]);
-        const double overlap = r[i] + r[j] - std::sqrt(distance2);
-        counts[0] +=
-            i < grains_.size() && is_contact(overlap, [&](std::size_t c) { return pairs_.now.history[c][k]; })
-                ? 1
-                : 0;
-        greatest[1] = std::max(greatest[1], overlap / std::min(r[i], r[j]));
-    }
-    for (const dem::WallTouch& touch : at_walls_.touches()) {
-        greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
-        counts[1] += is_contact(touch.overlap, [&](std::size_t c) { return touch.history[c]; }) ? 1 : 0;
-        const std::array<double, 3> force{-touch.force.x, -touch.force.y, -touch.force.z};
-        for (std::size_t a = 0; a < 3; ++a) sums[sum_count + 3 * touch.wall + a].add(force[a]);
-    }
-    counts[3] = bonds_.count_below(grains_.size());
-    ExactSum::all_reduce(comm_, sums);
-    comm_.all_max(std::span<double>(greatest));
-    comm_.all_sum(std::span<std::uint64_t>(counts));
-    const auto mobile = static_cast<double>(std::max<std::uint64_t>(counts[2], 1));
-    std::vector<std::array<double, 3>> wall_forces(setup_.walls.size());
-    for (std::size_t w = 0; w < wall_forces.size(); ++w)
-        for (std::size_t a = 0; a < 3; ++a) wall_forces[w][a] = sums[sum_count + 3 * w + a].value();
-    return {.mass = sums[mass].value(),
-            .kinetic_energy = sums[kinetic].value(),
-            .rotational_energy = sums[rotational].value(),
-            .potential_energy = sums[potential].value(),
-            .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
-            .angular_momentum = {sums[lx].value(), sums[ly].value(), sums[lz].value()},
-            .greatest_speed = greatest[0],
-            .greatest_overlap = greatest[1],
-            .grains = total_grains(),
-            .contacts = counts[0],
-            .wall_contacts = counts[1],
-            .bonds = counts[3],
-            .broken_bonds = counts[4] / 2,
-            .wall_forces = wall_forces,
-            .coordination = 2 * static_cast<double>(counts[0]) / mobile};
 }
 
 }  // namespace talus

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@
 #include "physics/dem/motion.hpp"
 #include "physics/dem/shear.hpp"
 #include "physics/dem/wall_contacts.hpp"
+#include "src/flow/grain_flow.hpp"
+#include "src/flow/grain_settling.hpp"
 #include "src/grain_gravity.hpp"
 #include "src/phases.hpp"
 
@@ -38,7 +41,9 @@ struct GrainSetup {
     double time_step = 0;  ///< the same throughout [s]
     double skin = 0;       ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
-    int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
+    int rebalance_interval = 10;              ///< steps between looks at the imbalance, at least
+    GrainFlowPlan flow{};                     ///< not of scenes with clumps, sinks not of scenes with bonds
+    std::optional<GrainSettling> settling{};  ///< not of scenes with clumps
 };
 
 /// Totals over all grains, exact sums rounded once: the same bits on any number of ranks. In a sheared box
@@ -52,8 +57,9 @@ struct GrainTotals {
     double greatest_overlap = 0;  ///< over the smaller radius [1]
     std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
     std::uint64_t bonds = 0, broken_bonds = 0;
-    std::vector<std::array<double, 3>>
-        wall_forces;          ///< of the grains on each wall at the last evaluation [N]
+    /// Of the grains on each wall at the last evaluation [N], and their torques about the centre of its
+    /// motion, which is carried along with it [N m].
+    std::vector<std::array<double, 3>> wall_forces, wall_torques;
     double coordination = 0;  ///< contacts with grains a grain that is not held [1]
 };
 
@@ -70,12 +76,13 @@ class GrainSimulation {
     /// What contacts of the setup's law remember.
     static std::vector<const FieldInfo*> history_fields(const GrainSetup& setup);
 
-    /// Joins grains and makes the first evaluation of a new run at time 0. Collective.
+    /// Joins grains and makes the first evaluation of a new run, at time 0 or where settling begins.
+    /// Collective.
     void start();
-    /// Goes on from a checkpoint: the grains given to the constructor as they were read, their contacts, and
-    /// their bonds if the setup has any. Collective.
-    void resume(double time, std::uint64_t step, const ParticleSet& contacts,
-                const ParticleSet* bonds = nullptr);
+    /// Goes on from a checkpoint: the grains given to the constructor as they were read, what
+    /// save_numbers() added to its state, their contacts, and their bonds if the setup has any. Collective.
+    void resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
+                const ParticleSet& contacts, const ParticleSet* bonds = nullptr);
 
     /// One time step. Throws AgreedError (exit code 1) naming two grains if the force between them is beyond
     /// all bounds, or a grain that was lost, left through a wall or moves no finite way. Collective.
@@ -93,6 +100,8 @@ class GrainSimulation {
     const dem::ClumpMotion& clumps() const { return clumps_; }
     const Communicator& comm() const { return comm_; }
     const Decomposition& decomposition() const { return decomposition_; }
+    /// What came and went.
+    const GrainFlow& flow() const { return flow_; }
     std::uint64_t total_grains() const { return decomposition_.total_particles(); }
     /// Contacts evaluated by this rank since the counters were reset, those with walls included.
     std::uint64_t evaluated_contacts() const { return evaluated_; }
@@ -108,6 +117,11 @@ class GrainSimulation {
     /// Brings the grains back into the box and to where they belong, as a checkpoint holds them, and returns
     /// the contacts of this rank's grains. Changes no result. Collective.
     ParticleSet save();
+    void save_numbers(std::map<std::string, double>& numbers) const;
+    /// What the last steps did that a user should know.
+    std::vector<std::string> take_notes();
+    /// The contacts of the state as it is, those with copies on each side. Collective.
+    std::vector<dem::LoadedContact> loaded_contacts();
     /// The bonds of this rank's grains, after save().
     ParticleSet saved_bonds() const;
     /// Greatest stable step under the bonds that there are [s], infinite without any. Collective.
@@ -117,12 +131,15 @@ class GrainSimulation {
 
   private:
     void arrange(std::vector<dem::ContactRecord> records, double time);
+    std::optional<std::vector<dem::ContactRecord>> exchange_grains();
     std::vector<dem::ContactRecord> records_of_contacts() const;
     std::vector<dem::ContactRecord> records_below(std::size_t end) const;
     void describe_grains();
     void list_contacts(const std::vector<dem::ContactRecord>& records, double time);
     void evaluate(double time_step);
     void finish(double kick_step, const dem::Impulse& impulse);
+    void settle();
+    double remaining_motion(double time_step) const;
     std::vector<dem::WallPose> poses_at(double time) const;
     bool walls_move() const;
     void refuse_not_finite();
@@ -136,10 +153,11 @@ class GrainSimulation {
     GrainSetup setup_;
     ParticleSet grains_;
     Decomposition decomposition_;
+    double largest_radius_, reach_;
     std::unique_ptr<CellGrid> grid_;
     std::optional<GrainGravity> gravity_;
-    double largest_radius_ = 0, reach_ = 0;
     std::optional<dem::Shear> shear_;
+    GrainFlow flow_;
     dem::ContactList pairs_;
     dem::WallContacts at_walls_;
     dem::BondList bonds_;
@@ -153,7 +171,9 @@ class GrainSimulation {
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;
-    double moved_ = 0;  ///< no grain of any rank has moved farther since the last list [m]
+    double moved_ = 0;     ///< no grain of any rank has moved farther since the last list [m]
+    int quiet_looks_ = 0;  ///< in a row, while grains settle
+    std::vector<std::string> notes_;
     std::string fault_;
     std::uint64_t evaluated_ = 0, lists_ = 0;
     Phases phases_;

@@ -110,18 +110,22 @@ ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fiel
     return empty_pairs("contacts", dimension, fields);
 }
 
+std::uint64_t pair_row_id(std::uint64_t first, std::uint64_t rank) {
+    constexpr int bits_of_rank = 20;
+    if (first >> (64 - bits_of_rank) != 0 || rank >> bits_of_rank != 0)
+        throw std::runtime_error("contacts of ids from 2^44 on, or more than 2^20 of a grain");
+    return first << bits_of_rank | rank;
+}
+
 template <std::size_t count>
 void save_pairs(std::vector<PairRecord<count>> records, std::span<const FieldInfo* const> fields,
                 ParticleSet& pairs) {
-    constexpr int bits_of_rank = 20;
     std::sort(records.begin(), records.end(), is_before<count>);
     pairs.resize(records.size());
     std::uint64_t rank = 0;
     for (std::size_t k = 0; k < records.size(); ++k) {
         rank = k > 0 && records[k].first == records[k - 1].first ? rank + 1 : 0;
-        if (records[k].first >> (64 - bits_of_rank) != 0 || rank >> bits_of_rank != 0)
-            throw std::runtime_error("contacts of ids from 2^44 on, or more than 2^20 of a grain");
-        pairs.data(field::id)[k] = records[k].first << bits_of_rank | rank;
+        pairs.data(field::id)[k] = pair_row_id(records[k].first, rank);
         pairs.data(field::first_id)[k] = records[k].first;
         pairs.data(field::second_id)[k] = records[k].second;
     }

@@ -62,8 +62,12 @@ ParticleSet empty_contacts(int dimension, std::span<const FieldInfo* const> fiel
 /// The same of another name.
 ParticleSet empty_pairs(const std::string& name, int dimension, std::span<const FieldInfo* const> fields);
 
+/// Id of the row of a pair among those of its first grain, numbered from 0. Throws std::runtime_error for ids
+/// from 2^44 on.
+std::uint64_t pair_row_id(std::uint64_t first, std::uint64_t rank);
+
 /// Fills an empty set as a checkpoint saves it with the records whose first grain is this rank's own; row ids
-/// order the pairs by their grains' ids. Throws std::runtime_error for ids from 2^44 on.
+/// order the pairs by their grains' ids: pair_row_id().
 template <std::size_t count>
 void save_pairs(std::vector<PairRecord<count>> records, std::span<const FieldInfo* const> fields,
                 ParticleSet& pairs);

@@ -66,7 +66,8 @@ void predict_half_step(ParticleSet& grains, double time_step) {
 }
 
 double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
-                   const Vector3<>& gravity, const Impulse& impulse, double kick_step, double time_step) {
+                   const Vector3<>& gravity, const Impulse& impulse, double kick_step, double time_step,
+                   double remaining) {
     static_assert(sizeof(ForceSum) == 6 * sizeof(double));
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
     const std::array<double, 3> g{gravity.x, gravity.y, gravity.z};
@@ -97,9 +98,10 @@ double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Response
             const Lanes now = sum(a) * response + select(response > 0, Lanes(g[a]), Lanes(0.0));
             const Lanes given =
                 is_given ? select(response > 0, values(impulse.acceleration[a]), Lanes(0.0)) : Lanes(0.0);
-            const Lanes velocity = values(v[a]) + half_kick * (values(dv[a]) + now) + impulse.now * given;
+            const Lanes velocity =
+                remaining * (values(v[a]) + half_kick * (values(dv[a]) + now)) + impulse.now * given;
             const Lanes turn = sum(3 + a) * angular;
-            const Lanes spin = values(w[a]) + half_kick * (values(dw[a]) + turn);
+            const Lanes spin = remaining * (values(w[a]) + half_kick * (values(dw[a]) + turn));
             store_first(v[a] + i, count, velocity);
             store_first(w[a] + i, count, spin);
             store_first(dv[a] + i, count, now);

@@ -50,7 +50,7 @@ void WallContacts::restore(std::span<const ContactRecord> records, const Particl
         for (auto at = std::lower_bound(known.begin(), known.end(), first, before);
              at != known.end() && at->first == first.first && at->second < wall_key(near.wall + 1, 0); ++at)
             touches_.push_back(
-                {near.grain, near.wall, static_cast<std::uint32_t>(at->second), 0, {}, at->history});
+                {near.grain, near.wall, static_cast<std::uint32_t>(at->second), 0, {}, {}, at->history});
         near.end = static_cast<std::uint32_t>(touches_.size());
     }
 }
@@ -85,14 +85,13 @@ Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable&
             find_wall_contacts(walls[near.wall], pose, g.position, radius, law.reach(radius), found);
             const auto begin = static_cast<std::uint32_t>(touches_.size());
             for (const WallContact& contact : found) {
-                WallTouch touch{near.grain, near.wall, contact.place, contact.overlap, {}, {}};
+                WallTouch touch{near.grain, near.wall, contact.place, contact.overlap, contact.point};
                 for (std::uint32_t t = near.begin; t < near.end; ++t)
                     if (before_[t].place == contact.place) touch.history = before_[t].history;
                 const ContactKinematics<double> k =
                     wall_kinematics(contact.normal, contact.overlap, g.grain, contact.wall_velocity,
                                     pose.angular_velocity, evaluation.time_step);
-                const ContactLoad<double> load = load_of(law, k, touch.history);
-                touch.force = load.force;
+                const ContactLoad<double> load = touch.load = load_of(law, k, touch.history);
                 touches_.push_back(touch);
                 ForceSum& sum = evaluation.sums[near.grain];
                 const Vector3<> torque =
@@ -109,6 +108,34 @@ Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable&
     };
     std::visit(loop, laws);
     return overload;
+}
+
+void WallContacts::append_loads(const GrainRows& rows, const AnyLawTable& laws, std::span<const Wall> walls,
+                                std::span<const WallPose> poses, std::vector<LoadedContact>& contacts) const {
+    std::vector<WallContact> found;
+    const auto loop = [&](const auto& table) {
+        for (const Near& near : near_) {
+            if (near.begin == near.end) continue;
+            const auto& law = table.pairs[near.law];
+            const PlacedGrain<double> g = placed_grain(rows[near.grain]);
+            find_wall_contacts(walls[near.wall], poses[near.wall], g.position, g.grain.radius,
+                               law.reach(g.grain.radius), found);
+            for (const WallContact& contact : found) {
+                const auto touch =
+                    std::find_if(touches_.begin() + near.begin, touches_.begin() + near.end,
+                                 [&](const WallTouch& one) { return one.place == contact.place; });
+                if (touch == touches_.begin() + near.end) continue;
+                const ContactKinematics<double> k =
+                    wall_kinematics(contact.normal, contact.overlap, g.grain, contact.wall_velocity,
+                                    poses[near.wall].angular_velocity, 0.0);
+                std::array<double, most_history> history = touch->history;
+                contacts.push_back({near.grain, near.wall, contact.place, true, contact.overlap,
+                                    contact_arm(g.grain.radius, contact.overlap), 0, contact.normal,
+                                    contact.point, load_of(law, k, history)});
+            }
+        }
+    };
+    std::visit(loop, laws);
 }
 
 double WallContacts::displacement(std::span<const WallPose> poses) const {

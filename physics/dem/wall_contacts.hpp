@@ -6,6 +6,7 @@
 
 #include "domain/particles.hpp"
 #include "physics/dem/contact_list.hpp"
+#include "physics/dem/contact_loads.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/contact_record.hpp"
 #include "physics/dem/walls/wall.hpp"
@@ -15,9 +16,10 @@ namespace talus::dem {
 /// A grain at a wall; a grain may touch a wall in several places, each a contact of its own.
 struct WallTouch {
     std::uint32_t grain, wall, place;
-    double overlap;   ///< [m]
-    Vector3<> force;  ///< on the grain [N]
-    std::array<double, most_history> history;
+    double overlap;              ///< [m]
+    Vector3<> point{};           ///< where they touch [m]
+    ContactLoad<double> load{};  ///< on the grain
+    std::array<double, most_history> history{};
 };
 
 /// The contacts of this rank's grains with walls, and what they remember.
@@ -38,6 +40,10 @@ class WallContacts {
     /// The walls' greatest displacement since list(), wherever a grain may be, is not greater than this once
     /// they are at `poses` [m].
     double displacement(std::span<const WallPose> poses) const;
+
+    /// Appends all contacts as they are, walls at `poses`.
+    void append_loads(const GrainRows& rows, const AnyLawTable& laws, std::span<const Wall> walls,
+                      std::span<const WallPose> poses, std::vector<LoadedContact>& contacts) const;
 
     /// Contacts of the last evaluation.
     std::span<const WallTouch> touches() const { return touches_; }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <vector>
@@ -30,10 +31,11 @@ int check_grain_scene(const Communicator& comm, const Scene& scene) {
     for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
         const GrainBody& body = setup.bodies[b];
         fmt::print("grains {}: {} of {}, radius {:.4g} to {:.4g} m{}\n", body.name, counts[b],
-                   body.material.name, body.least_radius, body.greatest_radius, body.held ? ", held" : "");
+                   body.material.name, body.least_radius, body.greatest_radius,
+                   body.held ? ", held" : (body.inserted ? ", inserted as time goes on" : ""));
     }
     for (const std::string& warning : evolution.warnings()) fmt::print("note: {}\n", warning);
-    const auto total = static_cast<double>(evolution.total_particles());
+    const auto total = static_cast<double>(std::max<std::uint64_t>(evolution.total_particles(), 1));
     fmt::print("\ngrains: {} on {} ranks, {} bytes each in fields, {:.0f} in pairs, contacts and forces\n",
                evolution.total_particles(), comm.size(), evolution.particles().bytes_per_particle(),
                static_cast<double>(lists) / total);

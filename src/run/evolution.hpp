@@ -31,6 +31,12 @@ struct Diagnostics {
     double total_energy = 0;  ///< that should stay the same [J]; 0 where no such energy is known
 };
 
+/// A set that is written as a series of snapshots of its own.
+struct SnapshotSet {
+    ParticleSet set;
+    std::vector<SnapshotField> fields;
+};
+
 /// What a scene describes and how it moves on in time: all that the run loop and the recorder know of it. One
 /// implementation a family of models. All methods but the plain getters are collective.
 class Evolution {
@@ -57,8 +63,9 @@ class Evolution {
     /// One time step. Throws AgreedError if the run cannot go on.
     virtual void step() = 0;
 
-    /// What happened at the start or in the last step that a user should know, once; or nothing.
-    virtual std::string news() { return {}; }
+    /// What happened at the start or in the last step that a user should know, each told once; the same on
+    /// every rank.
+    virtual std::vector<std::string> news() { return {}; }
 
     virtual double time() const = 0;       ///< [s]
     virtual double time_step() const = 0;  ///< [s]
@@ -79,8 +86,10 @@ class Evolution {
     using WriteSets = std::function<void(const std::vector<const ParticleSet*>&)>;
     virtual void save(const WriteSets& write) = 0;
     virtual std::vector<SnapshotField> snapshot_fields() const = 0;
+    /// What is written beside the particles with each snapshot.
+    virtual std::vector<SnapshotSet> more_snapshots() { return {}; }
     virtual std::vector<CsvColumn> diagnostics_columns() const = 0;
-    virtual Diagnostics diagnostics() const = 0;
+    virtual Diagnostics diagnostics() = 0;
     /// What else a summary of the run says, a line or nothing.
     virtual std::string summary() const = 0;
     /// What else performance.json holds: `"key": value, ` for each, or nothing.

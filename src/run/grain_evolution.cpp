@@ -9,6 +9,8 @@
 #include "domain/grain_fields.hpp"
 #include "io/agree.hpp"
 #include "io/checkpoint.hpp"
+#include "src/flow/contact_set.hpp"
+#include "src/run/flow_columns.hpp"
 #include "src/run/sph_evolution.hpp"
 
 namespace talus {
@@ -119,7 +121,8 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
 }
 
 void GrainEvolution::resume(const RunState& state) {
-    simulation_->resume(state.time, state.step, *read_contacts_, read_bonds_ ? &*read_bonds_ : nullptr);
+    simulation_->resume(state.time, state.step, state.numbers, *read_contacts_,
+                        read_bonds_ ? &*read_bonds_ : nullptr);
     read_contacts_.reset();
     read_bonds_.reset();
 }
@@ -170,6 +173,7 @@ void GrainEvolution::describe(RunState& state) const {
     state.walls = walls();
     if (const double sheared = sheared_in_a_step(setup_.simulation); sheared != 0)
         state.numbers["sheared_in_a_step"] = sheared;
+    simulation_->save_numbers(state.numbers);
 }
 
 std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
@@ -179,6 +183,19 @@ std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
         fields.push_back({.field = info});
     if (has_bonds()) fields.push_back({.field = &field::broken_bonds});
     return fields;
+}
+
+std::vector<SnapshotSet> GrainEvolution::more_snapshots() {
+    if (!setup_.write_contacts) return {};
+    std::vector<SnapshotSet> sets;
+    sets.push_back({contact_set(simulation_->loaded_contacts(), simulation_->grains()), contact_fields()});
+    return sets;
+}
+
+/// Where an axis is periodic, places are not unique, and torques neither.
+bool GrainEvolution::torques_have_meaning() const {
+    const auto& boundaries = setup_.simulation.box.boundary;
+    return std::find(boundaries.begin(), boundaries.end(), Boundary::periodic) == boundaries.end();
 }
 
 std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
@@ -202,10 +219,18 @@ std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
     for (const dem::Wall& wall : setup_.simulation.walls)
         for (const char axis : {'x', 'y', 'z'})
             columns.push_back({fmt::format("force_{}_{}", wall.name, axis), "N"});
+    if (torques_have_meaning())
+        for (const dem::Wall& wall : setup_.simulation.walls)
+            for (const char axis : {'x', 'y', 'z'})
+                columns.push_back({fmt::format("torque_{}_{}", wall.name, axis), "N m"});
+    append_flow_columns(setup_.simulation.flow, columns);
+    std::vector<std::string> bodies;
+    for (const GrainBody& body : setup_.bodies) bodies.push_back(body.name);
+    append_region_columns(setup_.regions, bodies, columns);
     return columns;
 }
 
-Diagnostics GrainEvolution::diagnostics() const {
+Diagnostics GrainEvolution::diagnostics() {
     const GrainTotals t = simulation_->totals();
     std::vector<double> row = {simulation_->time(),
                                t.mass,
@@ -225,6 +250,19 @@ Diagnostics GrainEvolution::diagnostics() const {
     if (knows_angular_momentum(setup_))
         row.insert(row.end(), t.angular_momentum.begin(), t.angular_momentum.end());
     for (const auto& force : t.wall_forces) row.insert(row.end(), force.begin(), force.end());
+    if (torques_have_meaning())
+        for (const auto& torque : t.wall_torques) row.insert(row.end(), torque.begin(), torque.end());
+    append_flow_values(simulation_->flow(), simulation_->total_grains(), row);
+    if (setup_.regions.empty()) return {row, 0};
+    const auto wants_stress = [](const WatchedRegion& region) { return region.stress; };
+    std::vector<dem::LoadedContact> contacts;
+    if (std::any_of(setup_.regions.begin(), setup_.regions.end(), wants_stress))
+        contacts = simulation_->loaded_contacts();
+    const GrainSimulation& now = *simulation_;
+    append_region_values(
+        setup_.regions,
+        region_states(comm_, now.grains(), now.setup().box, setup_.bodies.size(), setup_.regions, contacts),
+        row);
     return {row, 0};
 }
 

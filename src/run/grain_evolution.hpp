@@ -25,6 +25,7 @@ class GrainEvolution : public Evolution {
     void resume(const RunState& state) override;
     /// As many steps as it takes until the state is one to write and to go on from.
     void step() override;
+    std::vector<std::string> news() override { return simulation_->take_notes(); }
     double time() const override { return simulation_->time(); }
     double time_step() const override { return simulation_->time_step(); }
     std::uint64_t step_count() const override { return simulation_->step_count(); }
@@ -38,8 +39,9 @@ class GrainEvolution : public Evolution {
     void describe(RunState& state) const override;
     void save(const WriteSets& write) override;
     std::vector<SnapshotField> snapshot_fields() const override;
+    std::vector<SnapshotSet> more_snapshots() override;
     std::vector<CsvColumn> diagnostics_columns() const override;
-    Diagnostics diagnostics() const override;
+    Diagnostics diagnostics() override;
     std::string summary() const override;
     std::string performance() const override;
 
@@ -49,6 +51,7 @@ class GrainEvolution : public Evolution {
   private:
     std::vector<std::string> materials() const;
     void check_shear(const ReadCheckpoint& found) const;
+    bool torques_have_meaning() const;
     bool has_bonds() const { return !setup_.simulation.bonds.empty(); }
     std::vector<std::string> walls() const;
 

@@ -154,7 +154,7 @@ void Recorder::after_step(Evolution& evolution) {
         files_->performance->write(evolution);
     }
     if (const double interval = output_.snapshot_interval;
-        interval > 0 && fell_due(time_before_, time, interval))
+        interval > 0 && time >= 0 && fell_due(time_before_, time, interval))
         write_snapshot_now(evolution, static_cast<std::uint64_t>(time / interval));
     const auto now = std::chrono::steady_clock::now();
     if (output_.checkpoint_interval > 0) {
@@ -171,9 +171,8 @@ void Recorder::after_step(Evolution& evolution) {
 }
 
 void Recorder::tell_news(Evolution& evolution) {
-    const std::string news = evolution.news();
-    if (comm_.is_root() && !news.empty())
-        files_->log->warn("note: step {}: {}", evolution.step_count(), news);
+    for (const std::string& news : evolution.news())
+        if (comm_.is_root()) files_->log->warn("note: step {}: {}", evolution.step_count(), news);
 }
 
 void Recorder::stop_early(Evolution& evolution, const std::string& why) {
@@ -197,8 +196,9 @@ void Recorder::finish(Evolution& evolution) {
     write_checkpoint_now(evolution);
     if (last_snapshot_step_ != evolution.step_count()) {  // the last state, due or not
         const double interval = output_.snapshot_interval;
-        write_snapshot_now(evolution,
-                           1 + (interval > 0 ? static_cast<std::uint64_t>(evolution.time() / interval) : 0));
+        write_snapshot_now(
+            evolution,
+            1 + (interval > 0 ? static_cast<std::uint64_t>(std::max(evolution.time(), 0.0) / interval) : 0));
     }
     write_analysis(evolution);
     print_summary(evolution);
@@ -237,6 +237,8 @@ void Recorder::write_snapshot_now(Evolution& evolution, std::uint64_t index) {
     evolution.save([&](const auto&) {
         write_snapshot(comm_, folder_, index, run_state(evolution, scene_), evolution.particles(),
                        evolution.snapshot_fields());
+        for (const SnapshotSet& more : evolution.more_snapshots())
+            write_snapshot(comm_, folder_, index, run_state(evolution, scene_), more.set, more.fields);
     });
 }
 

@@ -32,16 +32,16 @@ std::vector<std::string> SphEvolution::warnings() const {
     return found;
 }
 
-std::string SphEvolution::news() {
+std::vector<std::string> SphEvolution::news() {
     const Clipped& clipped = simulation_->clipped_at_late_phase();
     if (clipped.particles == 0 || told_of_clipped_) return {};
     told_of_clipped_ = true;
-    return fmt::format(
+    return {fmt::format(
         "late phase: {} particles lose pressure at the change, for they would have to be denser than {} "
         "times "
         "their density at rest, the first of them {}; a larger late_phase.stiffness or a later "
         "late_phase.from?",
-        clipped.particles, most_compressed, clipped.first_id);
+        clipped.particles, most_compressed, clipped.first_id)};
 }
 
 void SphEvolution::create(const std::function<void()>& check_stop) {
@@ -110,7 +110,7 @@ std::vector<CsvColumn> SphEvolution::diagnostics_columns() const {
     return columns;
 }
 
-Diagnostics SphEvolution::diagnostics() const {
+Diagnostics SphEvolution::diagnostics() {
     const Totals t = simulation_->totals();
     std::vector<double> row = {simulation_->time(),
                                simulation_->time_step(),

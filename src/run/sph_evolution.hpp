@@ -38,11 +38,11 @@ class SphEvolution : public Evolution {
     }
     double work() const override { return simulation_->work(); }
     void describe(RunState& state) const override;
-    std::string news() override;
+    std::vector<std::string> news() override;
     void save(const WriteSets& write) override { write({&simulation_->particles()}); }
     std::vector<SnapshotField> snapshot_fields() const override;
     std::vector<CsvColumn> diagnostics_columns() const override;
-    Diagnostics diagnostics() const override;
+    Diagnostics diagnostics() override;
     std::string summary() const override;
     std::string performance() const override;
     std::string analyse(const std::filesystem::path& folder, const RunState& state) const override;

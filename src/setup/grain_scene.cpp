@@ -11,6 +11,7 @@
 #include "src/setup/body_reader.hpp"
 #include "src/setup/bond_reader.hpp"
 #include "src/setup/clump_reader.hpp"
+#include "src/setup/flow_reader.hpp"
 #include "src/setup/grain_law_reader.hpp"
 #include "src/setup/gravity_reader.hpp"
 #include "src/setup/handed_grains.hpp"
@@ -105,32 +106,23 @@ void take_file(const Communicator& comm, const std::filesystem::path& file, cons
     body.least_density = comm.all_min(least_density);
 }
 
-std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene, const Box& box,
-                                   GrainLawReader& laws, std::vector<std::uint8_t>& materials,
-                                   std::uint64_t seed) {
+std::vector<GrainBody> read_bodies(const BodyContext& context, GrainLawReader& laws,
+                                   std::vector<std::uint8_t>& materials) {
+    const Section root = context.scene.root();
     std::vector<GrainBody> bodies;
-    const std::vector<Section> tables = scene.root().sections("grains");
-    if (tables.size() > 255) scene.root().error("grains", "more than 255 bodies of grains");
+    const std::vector<Section> tables = root.sections("grains");
+    if (tables.size() > 255) root.error("grains", "more than 255 bodies of grains");
     for (const Section& table : tables) {
         GrainBody body;
         body.name = table.text("name", table.path());
         materials.push_back(laws.material(table));
         body.material = laws.materials()[materials.back()];
         body.held = table.flag("held", false);
-        const BodyContext context{.comm = comm,
-                                  .scene = scene,
-                                  .dimension = 3,
-                                  .domain = {box.lower, box.upper},
-                                  .boundaries = box.boundary,
-                                  .first_body = nullptr,
-                                  .in_impact = false,
-                                  .gravitational_constant = 0,
-                                  .seed = seed};
         body.spin = read_spin(table, 3);
-        if (const auto file = file_of_grains(comm, scene, table)) {
-            take_file(comm, *file, table, body);
+        if (const auto file = file_of_grains(context.comm, context.scene, table)) {
+            take_file(context.comm, *file, table, body);
         } else if (table.has("file")) {
-            body.listed = read_list(comm, scene, table);
+            body.listed = read_list(context.comm, context.scene, table);
             body.least_radius = infinity;
             for (const auto& row : body.listed) {
                 body.least_radius = std::min(body.least_radius, row[3]);
@@ -153,11 +145,23 @@ std::vector<dem::ClumpBody> clumps_of(const std::vector<GrainBody>& bodies) {
     for (const GrainBody& body : bodies) {
         clumps.push_back({body.clump, first_id, body.material.density});
         std::uint64_t places = body.listed.size();
-        if (places == 0)
+        if (places == 0 && !body.inserted)
             for_each_point(body.shape, body.cell, body.spacing, 3, [&](const Point&) { ++places; });
         first_id += places * spheres_of(body);
     }
     return clumps;
+}
+
+/// What is not known of clumps and bonds, under self-gravity and in sheared boxes.
+void refuse_together(const Section& root, bool clumps, bool bonds, bool self_gravity, bool sheared) {
+    for (const char* table : {"sink", "region", "settle"})
+        if (clumps && root.has(table)) root.error(table, "does not go with clumps");
+    if (bonds && root.has("sink"))
+        root.error("sink", "does not go with bonds: a deleted grain would leave its own");
+    for (const char* table : {"sink", "source", "settle"}) {
+        if (self_gravity && root.has(table)) root.error(table, "does not go with [gravity]");
+        if (sheared && root.has(table)) root.error(table, "does not go with box.shear_rate");
+    }
 }
 
 /// Grains that wrap around the box must not meet the same partner, or themselves, on both sides.
@@ -205,7 +209,7 @@ void read_shear(const Section& table, const std::vector<GrainBody>& bodies, bool
 
 }  // namespace
 
-bool is_grain_scene(const Scene& scene) { return scene.root().has("grains"); }
+bool is_grain_scene(const Scene& scene) { return scene.root().has("grains") || scene.root().has("source"); }
 
 GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     const Section root = scene.root();
@@ -215,7 +219,17 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     Box box = read_box(root.section("box"), 3);
     GrainLawReader laws(root);
     std::vector<std::uint8_t> material, held;
-    std::vector<GrainBody> bodies = read_bodies(comm, scene, box, laws, material, seed);
+    const BodyContext context{.comm = comm,
+                              .scene = scene,
+                              .dimension = 3,
+                              .domain = {box.lower, box.upper},
+                              .boundaries = box.boundary,
+                              .first_body = nullptr,
+                              .in_impact = false,
+                              .gravitational_constant = 0,
+                              .seed = seed};
+    std::vector<GrainBody> bodies = read_bodies(context, laws, material);
+    GrainFlowPlan flow = read_flow(root, context, laws, bodies, material);
     double greatest = 0, widest = 0;
     for (const GrainBody& body : bodies) {
         held.push_back(body.held ? 1 : 0);
@@ -248,6 +262,10 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     if (time_step > limit.greatest)
         table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}",
                                              limit.greatest, limit.reason));
+    std::optional<GrainSettling> settling = read_settling(root, time_step, flow, walls);
+    std::vector<WatchedRegion> regions = read_regions(root, context);
+    const bool write_contacts = root.section("output").flag("contacts", false);
+    refuse_together(root, widest > 0, !bonds.empty(), self_gravity.has_value(), box.shear_rate != 0);
     scene.finish();
     return {.title = title,
             .simulation = {.box = box,
@@ -262,12 +280,16 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
                            .time_step = time_step,
                            .skin = skin,
                            .partition = partition,
-                           .rebalance_interval = rebalance_interval},
+                           .rebalance_interval = rebalance_interval,
+                           .flow = std::move(flow),
+                           .settling = settling},
             .bodies = std::move(bodies),
             .greatest_time_step = limit.greatest,
             .time_step_limit = limit.reason,
             .output = output,
             .shrinks_overlapping = shrinks,
+            .regions = std::move(regions),
+            .write_contacts = write_contacts,
             .warnings = std::move(warnings),
             .seed = seed};
 }
@@ -351,6 +373,7 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
     std::uint64_t first_id = 0;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         const GrainBody& body = scene.bodies[b];
+        if (body.inserted) continue;
         const std::size_t first_place = grains.size();
         if (body.handed) {
             append_grains(*body.handed, first_id, static_cast<std::uint8_t>(b), grains);

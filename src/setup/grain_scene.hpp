@@ -8,6 +8,7 @@
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
 #include "physics/dem/laws/materials.hpp"
+#include "src/flow/region_statistics.hpp"
 #include "src/grain_simulation.hpp"
 #include "src/setup/grain_sizes.hpp"
 #include "src/setup/packing.hpp"
@@ -20,6 +21,7 @@ struct GrainBody {
     std::string name;
     dem::GrainMaterial material;
     bool held = false;
+    bool inserted = false;  ///< by a source as time goes on: none at the start, and no shape or packing
     BodyShape shape;
     UnitCell cell;
     double spacing = 0;  ///< cube root of the volume a grain [m]
@@ -49,12 +51,14 @@ struct GrainScene {
     double greatest_time_step = 0;  ///< that is stable [s]
     std::string time_step_limit;    ///< what limits it
     OutputPlan output;
-    bool shrinks_overlapping = false;   ///< grains that overlap at the start; else they are refused
+    bool shrinks_overlapping = false;  ///< grains that overlap at the start; else they are refused
+    std::vector<WatchedRegion> regions;
+    bool write_contacts = false;        ///< with snapshots
     std::vector<std::string> warnings;  ///< what is doubtful, but can be used
     std::uint64_t seed = 0;
 };
 
-/// Whether the scene is one of grains: it has a table [[grains]].
+/// Whether the scene is one of grains: it has a table [[grains]] or [[source]].
 bool is_grain_scene(const Scene& scene);
 
 /// Reads everything such a scene says. Throws SceneError (on every rank) with all faults at once. Collective.

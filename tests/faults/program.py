@@ -367,6 +367,55 @@ end_time = 0.1
         done = self.run_grains("0.5,0.5,0.5,0.01,0,0,0\n0.2,0.5,0.98,0.01,0,0,50\n")
         self.assert_fails(done, 1, r"grain 1 at \(0\.2, 0\.5, 1\..*\) m has left through wall 'crate'", "last checkpoint")
 
+    SOURCE = """[[source]]
+name = "rain"
+material = "jelly"
+radius = 0.05
+shape = "box"
+lower = [0.4, 0.4, 0.4]
+upper = [0.6, 0.6, 0.6]
+rate = 1e5
+interval = 5
+[[sink]]
+name = "hole"
+shape = "plane"
+point = [0, 0, 0.45]
+normal = [0, 0, 1]
+begin = 0.01
+"""
+
+    def rows_of(self, out):
+        with (out / "diagnostics.csv").open() as file:
+            return [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_a_full_source_is_noted_once_and_restarts_go_on_with_its_ledger(self):
+        (self.folder / "grains.csv").write_text("0.1,0.1,0.1,0.05\n")
+        scene = self.scene(self.SOFT + self.SOURCE)
+        straight = self.folder / "straight"
+        done = talus("run", scene, "--steps", "120", "--out", straight)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(len(re.findall("note: source 'rain' is full at step 5, time .*: \\d+ of the grains due found no place "
+                                        "in 20 tries", done.stdout)), 1, done.stdout)
+        last = self.rows_of(straight)[-1]
+        self.assertGreater(last["missed_rain"], 0)
+        self.assertEqual(last["grains"], 1 + last["inserted_rain"] - last["deleted_hole"])
+        for steps, options in [(7, []), (120, ["--restart", "latest"])]:
+            done = talus("run", scene, "--steps", steps, "--out", self.out, *options, ranks=3)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(self.hash(self.out), self.hash(straight))
+        self.assertEqual(self.rows_of(self.out)[-1], last)
+        # Another scene's ledger cannot be right.
+        other = self.scene(self.SOFT + self.SOURCE.replace('"hole"', '"exit"'), "other.toml")
+        if last["deleted_hole"]:
+            done = talus("run", other, "--steps", "130", "--out", self.out, "--restart", "latest")
+            self.assert_fails(done, 1, r"the checkpoint holds \d+ grains.*come to \d+")
+
+    def test_bad_keys_of_sources_are_named(self):
+        (self.folder / "grains.csv").write_text("0.1,0.1,0.1,0.05\n")
+        text = self.SOFT + self.SOURCE.replace("rate = 1e5", "rte = 1e5").replace('"plane"', '"disk"')
+        done = talus("check", self.scene(text))
+        self.assert_fails(done, 2, r"source\[0\]\.rate", r"source\[0\]\.rte", r"sink\[0\]\.shape = .*disk")
+
     def test_overlapping_grains_are_refused_with_their_depth(self):
         done = self.run_grains("0.5,0.5,0.5,0.01\n0.51,0.5,0.5,0.01\n")
         self.assert_fails(done, 2, r"scene\.toml:7: grains.*overlap at the start, by up to 1 of the smaller radius; allowed: 0\.2")

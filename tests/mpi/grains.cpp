@@ -94,6 +94,39 @@ GrainSetup bonded_on_a_floor() {
     return setup;
 }
 
+/// The same floor with a rain into the cloud across the periodic edges, where places are scarce, a hole that
+/// swallows grains, across an edge too, and a lid above.
+GrainSetup come_and_go() {
+    GrainSetup setup = on_a_floor();
+    GrainSink hole{"hole", {SphereShape{{0.0993, 0.15, 0.03}, 0.02}, false}}, lid{"lid", {}};
+    hole.interval = 7;
+    hole.begin = 0.0002;
+    lid.region = {HalfSpace{{0, 0, 0.075}, {0, 0, -1}}, false};
+    GrainSource rain{.name = "rain",
+                     .body = 0,
+                     .density = 2500,
+                     .region = BoxShape{{-0.01, 0.1, 0.05}, {0.05, 0.22, 0.1}}};
+    rain.sizes.least = 0.002;
+    rain.sizes.greatest = 0.006;
+    rain.velocity = {0, 0.3, -1};
+    rain.rate = 1e5;
+    rain.interval = 5;
+    rain.tries = 3;
+    setup.flow = {{hole, lid}, {rain}, 7};
+    return setup;
+}
+
+/// The same rain from before time 0 on, until grains balance somewhat and the floor begins to swing.
+GrainSetup settle_first() {
+    GrainSetup setup = come_and_go();
+    setup.flow.sinks.pop_back();
+    setup.flow.sources[0].begin = -0.1;
+    setup.flow.sources[0].total = 40;
+    setup.settling =
+        GrainSettling{.imbalance = 30, .lasting = 2, .interval = 10, .longest = 0.1, .damping = 0.01};
+    return setup;
+}
+
 /// In a turning drum through which a sheet of triangles is drawn up.
 GrainSetup in_a_drum() {
     GrainSetup setup = rolling_setup();
@@ -245,6 +278,8 @@ TEST_P(GrainsSameBits, AfterInterruption) {
         first.start();
         for (int k = 0; k < stop; ++k) first.step();
         const ParticleSet contacts = first.save();
+        std::map<std::string, double> numbers;
+        first.save_numbers(numbers);
         const GatheredState saved_grains = gather_state(world, first.grains()),
                             saved_contacts = gather_state(world, contacts);
         EXPECT_TRUE(stop == 1 || saved_contacts.ids.size() > 30);
@@ -268,7 +303,7 @@ TEST_P(GrainsSameBits, AfterInterruption) {
         if (bonded) fill(read_bonds, saved_bonds, share(saved_bonds));
         GrainSimulation second =
             prepared(world, setup, {PartitionMethod::bisection, 5, 0.0007}, std::move(grains));
-        second.resume(first.time(), first.step_count(), read, bonded ? &read_bonds : nullptr);
+        second.resume(first.time(), first.step_count(), numbers, read, bonded ? &read_bonds : nullptr);
         for (int k = stop; k < steps; ++k) second.step();
         EXPECT_EQ(hash_of(world, second), serial_hash_) << "stopped at step " << stop;
         // Saving must not have changed the run that was saved either.
@@ -283,8 +318,59 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GrainsSameBits,
                                          Tested{"StickyOnAFloor", sticky_on_a_floor, spheres},
                                          Tested{"BondedOnAFloor", bonded_on_a_floor, spheres},
                                          Tested{"ClumpsOnAFloor", clumps_on_a_floor, clumps},
-                                         Tested{"Sheared", sheared, spheres}),
+                                         Tested{"Sheared", sheared, spheres},
+                                         Tested{"ComeAndGo", come_and_go, spheres},
+                                         Tested{"SettleFirst", settle_first, spheres}),
                          [](const auto& tested) { return tested.param.name; });
+
+TEST(GrainFlow, LedgerHoldsWhatCameAndWent) {
+    const Communicator world(MPI_COMM_WORLD);
+    GrainSimulation run = prepared(world, {"", come_and_go, spheres}, {});
+    run.start();
+    for (int k = 0; k < steps; ++k) run.step();
+    const GrainFlow::Came& rain = run.flow().came()[0];
+    const auto gone = run.flow().passed();
+    EXPECT_GT(gone[0].count, 10U);
+    EXPECT_GT(gone[1].count, 20U);
+    EXPECT_GT(rain.count, 50U);
+    EXPECT_GT(rain.missed, 5U);
+    EXPECT_EQ(rain.count + rain.missed, rain.attempts);
+    EXPECT_EQ(run.total_grains(), 700 + rain.count - gone[0].count - gone[1].count);
+    EXPECT_EQ(run.take_notes().size(), 1U) << "that the source is full is said once";
+    double first = 0;
+    for (const GrainState& grain : cloud()) first += mass_of(grain);
+    EXPECT_NEAR(run.totals().mass, first + rain.mass - gone[0].mass - gone[1].mass, 1e-12 * first)
+        << "masses of events, rounded once each";
+}
+
+TEST(GrainFlow, SettlingEndsAtTimeZeroOrWithAnError) {
+    const Communicator world(MPI_COMM_WORLD);
+    GrainSimulation run = prepared(world, {"", settle_first, spheres}, {});
+    run.start();
+    EXPECT_EQ(run.time(), -0.1);
+    while (run.time() < 0) run.step();
+    EXPECT_EQ(run.time(), 0);
+    EXPECT_GT(run.step_count(), 10U);
+    EXPECT_LT(run.step_count(), 100U) << "an interruption at step 1 and another at 101 are on either side";
+    EXPECT_EQ(run.flow().came()[0].count, 40U);
+    GrainSetup strict = settle_first();
+    strict.settling->imbalance = 1e-9;
+    strict.settling->longest = 0.001;
+    GrainSimulation never(world, strict, grain_set(world, cloud()));
+    never.start();
+    const auto until_zero = [&] {
+        while (never.time() < 0) never.step();
+    };
+    EXPECT_THROW(until_zero(), AgreedError);
+}
+
+TEST(GrainFlow, LedgerThatDoesNotAddUpIsRefused) {
+    const Communicator world(MPI_COMM_WORLD);
+    GrainSimulation run = prepared(world, {"", come_and_go, spheres}, {});
+    const std::map<std::string, double> numbers{{"flow.first_count", 701}};
+    const ParticleSet none = dem::empty_contacts(3, GrainSimulation::history_fields(come_and_go()));
+    EXPECT_THROW(run.resume(0, 0, numbers, none), AgreedError);
+}
 
 }  // namespace
 }  // namespace talus::test

@@ -14,6 +14,7 @@ import tomllib
 
 STEPS = 14
 STOP = 5
+STEPS_OF_SCENES = {"silo": (600, 120)}  # filled while it settles, opened, and grains deleted below it
 TO_THE_END = {"asteroid_collision": 200}  # scenes that run to their end, and the step where they are stopped
 MAPS = {1: "metis", 2: "cheapest", 3: "scrambled", 5: "slabs", 8: "cheapest"}  # of each number of ranks
 
@@ -66,7 +67,9 @@ def remnants_asked(scene):
 def steps_and_stop(scene):
     if scene.name in TO_THE_END:
         return None, TO_THE_END[scene.name]
-    times = STEPS_OF_GRAINS if "grains" in tomllib.loads((scene / "scene.toml").read_text()) else 1
+    if scene.name in STEPS_OF_SCENES:
+        return STEPS_OF_SCENES[scene.name]
+    times = STEPS_OF_GRAINS if "dem" in tomllib.loads((scene / "scene.toml").read_text()) else 1
     return times * STEPS, times * STOP
 
 

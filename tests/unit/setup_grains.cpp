@@ -193,6 +193,57 @@ TEST(ShearedScenes, WrongOnesAreRefused) {
     expect(sheared_scene("shear_rate = \"20 m\"\n", ""), "s-1");
 }
 
+const std::string source_text =
+    "[[source]]\nname = \"rain\"\nmaterial = \"glass\"\nradii = [0.002, 0.003]\nshape = \"domain\"\nrate = "
+    "100\n";
+
+TEST(SetupGrains, SourcesAreBodiesOfTheirOwn) {
+    std::string text = scene_text;
+    text.insert(text.find("[[wall]]"), source_text +
+                                           "[[sink]]\nshape = \"plane\"\npoint = [0, 0, 0.01]\n"
+                                           "normal = [0, 0, 1]\n[[region]]\nname = \"all\"\n"
+                                           "shape = \"domain\"\n");
+    const Communicator comm(MPI_COMM_SELF);
+    const GrainScene scene = read(text);
+    ASSERT_EQ(scene.bodies.size(), 2U);
+    EXPECT_EQ(scene.simulation.material.size(), 2U);
+    EXPECT_EQ(make_grains(comm, scene).size(), 10U * 10 * 8) << "none of the source at the start";
+    const GrainFlowPlan& flow = scene.simulation.flow;
+    ASSERT_EQ(flow.sources.size(), 1U);
+    EXPECT_EQ(flow.sources[0].body, 1);
+    EXPECT_EQ(flow.sources[0].sizes.greatest, 0.003);
+    EXPECT_FALSE(flow.sources[0].by_mass);
+    EXPECT_EQ(scene.simulation.skin, 0.3 * 0.003) << "for the largest that may come";
+    ASSERT_EQ(flow.sinks.size(), 1U);
+    EXPECT_EQ(flow.sinks[0].interval, 100U);
+    EXPECT_TRUE(flow.sinks[0].region.contains({0, 0, 0.009}));
+    EXPECT_FALSE(flow.sinks[0].region.contains({0, 0, 0.011}));
+    ASSERT_EQ(scene.regions.size(), 1U);
+}
+
+TEST(SetupGrains, RefusesSourcesAndSinksThatCannotBe) {
+    const auto expect_source_fault = [](const std::string& more, const std::string& fault) {
+        expect_fault("[[wall]]", source_text + more + "\n[[wall]]", fault);
+    };
+    expect_source_fault("mass_rate = 1", "give rate or mass_rate, not both");
+    expect_source_fault("total_mass = 1", "rate goes with number, mass_rate with total_mass");
+    expect_source_fault("interval = 0", "source[0].interval = 0");
+    expect_source_fault("tries = 0", "source[0].tries = 0");
+    expect_source_fault("begin = 2\nend = 1", "must not be before begin");
+    expect_source_fault("held = true", "source[0].held");
+    expect_source_fault(source_text, "there is another of the name 'rain'");
+    expect_source_fault("begin = -1\n[settle]\nlongest = 2", "must say how much it inserts in all");
+    expect_fault("[[wall]]", "[settle]\nlongest = 1e-9\n[[wall]]", "is shorter than two looks");
+    expect_fault("normal = [0, 0, 2]",
+                 "normal = [0, 0, 2]\n[wall.motion]\nvelocity = [0, 0, 1]\nbegin = -1\n[settle]\nlongest = 2",
+                 "must not be before time 0, while grains settle");
+    const std::string sink = "[[sink]]\nshape = \"plane\"\npoint = [0, 0, 0]\n";
+    expect_fault("[[wall]]", sink + "normal = [0, 0, 0]\n[[wall]]", "must have a length above 0");
+    expect_fault("[[wall]]", sink + "normal = [1, 0, 0]\n[[wall]]",
+                 "must be 0 along x, where the box is periodic");
+    expect_fault("[[wall]]", "[[sink]]\nshape = \"cylinder\"\n[[wall]]", "sink[0].shape");
+}
+
 /// A tetrahedron of 1 mm as an OBJ file; `faces` of it.
 std::string tetrahedron(int faces) {
     const char* const lines[] = {"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 3 1 4\n"};

@@ -1,0 +1,24 @@
+#include "src/flow/grain_region.hpp"
+
+#include "domain/boundary.hpp"
+
+namespace talus {
+
+bool GrainRegion::contains(const Point& place) const {
+    const auto* half = std::get_if<HalfSpace>(&shape);
+    const bool within = half ? dot(minus(place, half->point), half->normal) < 0
+                             : talus::contains(std::get<BodyShape>(shape), place, 3);
+    return within != outside;
+}
+
+Point place_in_box(const ParticleSet& grains, std::size_t i, const Box& box) {
+    Point place{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        place[a] = grains.data(field::position, axis)[i];
+        if (box.boundary[a] == Boundary::periodic) place[a] = wrapped(place[a], box.lower[a], box.upper[a]);
+    }
+    return place;
+}
+
+}  // namespace talus

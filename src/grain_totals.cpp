@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+
+#include "comm/exact_sum.hpp"
+#include "domain/clump_fields.hpp"
+#include "domain/grain_fields.hpp"
+#include "src/grain_simulation.hpp"
+
+namespace talus {
+
+GrainTotals GrainSimulation::totals() const {
+    enum Sum { mass, kinetic, rotational, potential, px, py, pz, lx, ly, lz, sum_count };
+    std::vector<ExactSum> sums(sum_count + 6 * setup_.walls.size());
+    double greatest_speed2 = 0;
+    const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
+    const std::uint8_t* body = grains_.data(field::body);
+    const double* attraction = gravity_ ? grains_.data(field::gravity_potential) : nullptr;
+    const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
+    // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
+    std::array<std::uint64_t, 5> counts{};
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+        counts[2] += setup_.held[body[i]] ? 0 : 1;
+        const dem::ClumpBody* clump = clumps_.of_body(body[i]);
+        if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
+        const Field<double>&centre = clump ? field::clump_centre : field::position,
+              &velocity = clump ? field::clump_velocity : field::velocity;
+        double speed2 = 0, spin2 = 0, potential_per_mass = attraction ? 0.5 * attraction[i] : 0;
+        std::array<double, 3> x, p;
+        const double flow = dem::shear_flow(setup_.box, grains_.data(field::position, 1)[i]);
+        for (int axis = 0; axis < 3; ++axis) {
+            const double v = grains_.data(velocity, axis)[i] - (axis == 0 ? flow : 0.0),
+                         w = grains_.data(field::angular_velocity, axis)[i];
+            speed2 += v * v;
+            spin2 += w * w;
+            const auto a = static_cast<std::size_t>(axis);
+            x[a] = grains_.data(centre, axis)[i];
+            p[a] = m[i] * v;
+            if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
+                potential_per_mass -= g[a] * x[a];
+            sums[px + a].add(p[a]);
+            sums[lx + a].add(clump ? grains_.data(field::clump_angular_momentum, axis)[i]
+                                   : 0.4 * m[i] * r[i] * r[i] * w);
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+            sums[lx + a].add(x[b] * p[c] - x[c] * p[b]);
+        }
+        sums[mass].add(m[i]);
+        sums[kinetic].add(0.5 * m[i] * speed2);
+        sums[rotational].add(clump ? clumps_.rotational_energy(grains_, i)
+                                   : 0.5 * 0.4 * m[i] * r[i] * r[i] * spin2);
+        sums[potential].add(m[i] * potential_per_mass);
+        greatest_speed2 = std::max(greatest_speed2, speed2);
+        if (bonds_.in_use()) counts[4] += grains_.data(field::broken_bonds)[i];
+    }
+    std::array<double, 2> greatest{std::sqrt(greatest_speed2), 0};
+    const auto sticks_at = std::visit(
+        []<class Table>(const Table&) -> std::size_t {
+            return Table::Law::sticks ? Table::Law::history_count : 0;
+        },
+        setup_.laws);
+    // Laws that act across gaps list pairs that only do that.
+    const auto is_contact = [&](double overlap, const auto& remembered) {
+        return reach_ == 0 || overlap > 0 || (sticks_at > 0 && remembered(sticks_at - 1) > 0);
+    };
+    for (std::size_t k = 0; k < pairs_.now.count; ++k) {
+        const std::uint32_t i = pairs_.first[pairs_.now.pair[k]], j = pairs_.second[pairs_.now.pair[k]];
+        double distance2 = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+            distance2 += (rows_[i][a] - rows_[j][a]) * (rows_[i][a] - rows_[j][a]);
+        const double overlap = r[i] + r[j] - std::sqrt(distance2);
+        counts[0] +=
+            i < grains_.size() && is_contact(overlap, [&](std::size_t c) { return pairs_.now.history[c][k]; })
+                ? 1
+                : 0;
+        greatest[1] = std::max(greatest[1], overlap / std::min(r[i], r[j]));
+    }
+    for (const dem::WallTouch& touch : at_walls_.touches()) {
+        greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
+        counts[1] += is_contact(touch.overlap, [&](std::size_t c) { return touch.history[c]; }) ? 1 : 0;
+        const dem::Vector3<> force = -touch.load.force;
+        const dem::WallPose& pose = poses_[touch.wall];
+        const dem::Vector3<> torque =
+            cross(touch.point - pose.centre - pose.shift, force) - touch.load.couple;
+        std::size_t sum = sum_count + 6 * touch.wall;
+        for (const double component : {force.x, force.y, force.z, torque.x, torque.y, torque.z})
+            sums[sum++].add(component);
+    }
+    counts[3] = bonds_.count_below(grains_.size());
+    ExactSum::all_reduce(comm_, sums);
+    comm_.all_max(std::span<double>(greatest));
+    comm_.all_sum(std::span<std::uint64_t>(counts));
+    const auto mobile = static_cast<double>(std::max<std::uint64_t>(counts[2], 1));
+    std::vector<std::array<double, 3>> wall_forces(setup_.walls.size()), wall_torques(setup_.walls.size());
+    for (std::size_t w = 0; w < wall_forces.size(); ++w)
+        for (std::size_t a = 0; a < 3; ++a) {
+            wall_forces[w][a] = sums[sum_count + 6 * w + a].value();
+            wall_torques[w][a] = sums[sum_count + 6 * w + 3 + a].value();
+        }
+    return {.mass = sums[mass].value(),
+            .kinetic_energy = sums[kinetic].value(),
+            .rotational_energy = sums[rotational].value(),
+            .potential_energy = sums[potential].value(),
+            .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
+            .angular_momentum = {sums[lx].value(), sums[ly].value(), sums[lz].value()},
+            .greatest_speed = greatest[0],
+            .greatest_overlap = greatest[1],
+            .grains = total_grains(),
+            .contacts = counts[0],
+            .wall_contacts = counts[1],
+            .bonds = counts[3],
+            .broken_bonds = counts[4] / 2,
+            .wall_forces = wall_forces,
+            .wall_torques = wall_torques,
+            .coordination = 2 * static_cast<double>(counts[0]) / mobile};
+}
+
+}  // namespace talus
