@@ -65,6 +65,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     setup_.box = places_.aligned(setup_.box);
     for (int axis = 0; axis < 3; ++axis)
         for (double& x : grains_.own(field::position, axis)) x = places_(axis, x);
+    if (setup_.box.shear_rate != 0) shear_.emplace(setup_.box, places_, setup_.time_step, largest_radius_);
     decomposition_.expect(grains_);
     // Ranks see all that may act on their grains, and the other ends of their bonds and clumps.
     const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
@@ -75,6 +76,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
                  &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
             grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
+    if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
 }
 
 void GrainSimulation::add_fields(ParticleSet& grains) {
@@ -87,6 +89,7 @@ void GrainSimulation::add_fields(ParticleSet& grains) {
 void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
     add_fields(grains);
     if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
+    if (setup.self_gravity) GrainGravity::add_fields(grains);
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
@@ -108,7 +111,7 @@ void GrainSimulation::start() {
     arrange({}, time_);
     if (bonds_.in_use()) join_grains();
     evaluate(0);
-    finish(0);
+    finish(0, gravity_ ? gravity_->start(grains_, *grid_, decomposition_) : dem::Impulse{});
 }
 
 void GrainSimulation::join_grains() {
@@ -133,6 +136,7 @@ void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std
         quiet_looks_ = static_cast<int>(looks->second);
     time_ = time;
     step_ = last_balance_ = step;
+    if (shear_) shear_->go_to(step);
     if (bonds)
         bonds_.adopt(dem::read_pairs<dem::bond_values>(comm_, *bonds, dem::BondList::fields(), grains_));
     arrange(dem::read_pairs<dem::most_history>(comm_, contacts, history_fields(setup_), grains_), time_);
@@ -141,15 +145,20 @@ void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
-    auto kept_contacts = exchange_grains();
+    if (gravity_) gravity_->begin_step(grains_, responses_);
+    if (shear_)
+        shear_->drift(grains_, setup_.time_step, places_);
+    else
+        auto kept_contacts = exchange_grains();
     dem::drift(grains_, setup_.time_step, places_);
     clumps_.drift(grains_, setup_.time_step, places_);
-    if (outdated_ || kept_contacts)
+    if (outdated_ || kept_contacts || (gravity_ && gravity_->ends_block()))
         arrange(kept_contacts ? std::move(*kept_contacts) : records_of_contacts(), time_ + setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
-    finish(setup_.time_step);
+    phases_.enter(Phase::gravity);
+    finish(setup_.time_step, gravity_ ? gravity_->end_step(grains_, *grid_, decomposition_) : dem::Impulse{});
     if (time_ < 0) settle();
     phases_.stop();
 }
@@ -190,8 +199,10 @@ void GrainSimulation::settle() {
 std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
     rows_.predict(grains_, 0);
     clumps_.predict(grains_, 0, rows_);
+    if (shear_) shear_->place_velocities(grains_, rows_);
     rows_halo_.begin(rows_.values());
     rows_halo_.finish(rows_.values());
+    if (shear_) shear_->move_copies(rows_);
     std::vector<dem::LoadedContact> contacts = dem::loaded_pairs(rows_, setup_.laws, pairs_);
     at_walls_.append_loads(rows_, setup_.laws, setup_.walls, poses_at(time_), contacts);
     return contacts;
@@ -214,6 +225,7 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::motion);
     rows_.predict(grains_, time_step);
     clumps_.predict(grains_, time_step, rows_);
+    if (shear_) shear_->place_velocities(grains_, rows_);
     if (bonds_.in_use()) {
         dem::predict_half_step(grains_, time_step);
         decomposition_.halo().begin(grains_,
@@ -230,6 +242,7 @@ void GrainSimulation::evaluate(double time_step) {
     refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
     rows_halo_.finish(rows_.values());
+    if (shear_) shear_->move_copies(rows_);
     phases_.enter(Phase::forces);
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
     if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
@@ -241,16 +254,17 @@ void GrainSimulation::evaluate(double time_step) {
     decomposition_.halo().finish();
 }
 
-void GrainSimulation::finish(double kick_step) {
+void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
     phases_.enter(Phase::motion);
-    const double moved2 =
-        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step,
-                                  remaining_motion(kick_step)),
+    double moved2 =
+        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, impulse, kick_step,
+                                  setup_.time_step, remaining_motion(kick_step)),
                  clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
     if (!std::isfinite(moved2)) refuse_not_finite();
+    if (shear_) moved2 = shear_->moved2(grains_, responses_.start, 2 * largest_radius_ + listed_gap());
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
     std::array<double, 3> greatest{moved2, walls_moved || bonds_.broken() ? 1.0 : 0.0,
@@ -336,6 +350,10 @@ bool GrainSimulation::walls_move() const {
 /// that of the positions [s].
 void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double time) {
     phases_.enter(Phase::decompose);
+    if (shear_) {
+        shear_->bring_back(grains_);
+        grid_->displace_images(shear_->offset());
+    }
     apply_boundaries(grains_, setup_.box);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
     if (interval > 0 && step_ >= last_balance_ + interval) {
@@ -412,6 +430,7 @@ void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& recor
     dem::restore_records(map, id_of, id_of, pairs_);
     std::vector<std::uint8_t> needed = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
     bonds_.mark_copies(grains_.size(), needed);
+    if (shear_) shear_->note_copies(grains_, needed);
     rows_halo_.choose(decomposition_.halo(), grains_.size(), needed);
     poses_ = poses_at(time);
     at_walls_.list(grains_, setup_.walls, poses_, rule);
@@ -461,6 +480,7 @@ std::uint64_t GrainSimulation::bytes_of_lists() const {
 
 void GrainSimulation::reset_counters() {
     evaluated_ = lists_ = 0;
+    if (gravity_) gravity_->reset_counts();
     phases_ = {};
 }
 

@@ -8,11 +8,12 @@
 namespace talus {
 
 GrainTotals GrainSimulation::totals() const {
-    enum Sum { mass, kinetic, rotational, potential, px, py, pz, sum_count };
+    enum Sum { mass, kinetic, rotational, potential, px, py, pz, lx, ly, lz, sum_count };
     std::vector<ExactSum> sums(sum_count + 6 * setup_.walls.size());
     double greatest_speed2 = 0;
     const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
     const std::uint8_t* body = grains_.data(field::body);
+    const double* attraction = gravity_ ? grains_.data(field::gravity_potential) : nullptr;
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
     // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
     std::array<std::uint64_t, 5> counts{};
@@ -22,16 +23,25 @@ GrainTotals GrainSimulation::totals() const {
         if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
         const Field<double>&centre = clump ? field::clump_centre : field::position,
               &velocity = clump ? field::clump_velocity : field::velocity;
-        double speed2 = 0, spin2 = 0, potential_per_mass = 0;
+        double speed2 = 0, spin2 = 0, potential_per_mass = attraction ? 0.5 * attraction[i] : 0;
+        std::array<double, 3> x, p;
+        const double flow = dem::shear_flow(setup_.box, grains_.data(field::position, 1)[i]);
         for (int axis = 0; axis < 3; ++axis) {
-            const double v = grains_.data(velocity, axis)[i],
+            const double v = grains_.data(velocity, axis)[i] - (axis == 0 ? flow : 0.0),
                          w = grains_.data(field::angular_velocity, axis)[i];
             speed2 += v * v;
             spin2 += w * w;
             const auto a = static_cast<std::size_t>(axis);
+            x[a] = grains_.data(centre, axis)[i];
+            p[a] = m[i] * v;
             if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
-                potential_per_mass -= g[a] * grains_.data(centre, axis)[i];
-            sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
+                potential_per_mass -= g[a] * x[a];
+            sums[px + a].add(p[a]);
+            sums[lx + a].add(0.4 * m[i] * r[i] * r[i] * w);
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+            sums[lx + a].add(x[b] * p[c] - x[c] * p[b]);
         }
         sums[mass].add(m[i]);
         sums[kinetic].add(0.5 * m[i] * speed2);
@@ -90,6 +100,7 @@ GrainTotals GrainSimulation::totals() const {
             .rotational_energy = sums[rotational].value(),
             .potential_energy = sums[potential].value(),
             .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
+            .angular_momentum = {sums[lx].value(), sums[ly].value(), sums[lz].value()},
             .greatest_speed = greatest[0],
             .greatest_overlap = greatest[1],
             .grains = total_grains(),

@@ -63,8 +63,8 @@ class Evolution {
     /// One time step. Throws AgreedError if the run cannot go on.
     virtual void step() = 0;
 
-    /// What the last step did that a user should know, in words; the same on every rank.
-    virtual std::vector<std::string> news() { return {}; }
+    /// What happened at the start or in the last step that a user should know, once; or nothing.
+    virtual std::string news() { return {}; }
 
     virtual double time() const = 0;       ///< [s]
     virtual double time_step() const = 0;  ///< [s]

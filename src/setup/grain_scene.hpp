@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,6 @@ struct GrainBody {
     std::string name;
     dem::GrainMaterial material;
     bool held = false;
-    bool inserted = false;  ///< by a source as time goes on: none at the start, and no shape or packing
     BodyShape shape;
     UnitCell cell;
     double spacing = 0;  ///< cube root of the volume a grain [m]
@@ -30,7 +30,12 @@ struct GrainBody {
            greatest_radius = 0;  ///< of the sizes, of the list or of the clump's spheres [m]
     std::shared_ptr<const dem::ClumpShape> clump;  ///< that each place of the packing gets, if any
     bool turned = false;                           ///< clumps are, each its own way
+    bool inserted = false;                         ///< by a source as time goes on: none at the start
     Point velocity{}, angular_velocity{};          ///< [m/s], [rad/s]
+    Point spin{};  ///< of the whole body, besides, about its centre of mass [rad/s]
+    /// Of the grains, if a file says their masses [kg/m3].
+    std::optional<double> least_density;
+    std::optional<ParticleSet> handed;  ///< each rank its share of the grains of a file of particle sets
     /// Rows of a file in place of all that: x y z, radius, velocity, angular velocity.
     std::vector<std::array<double, 10>> listed;
 };
@@ -48,6 +53,7 @@ struct GrainScene {
     OutputPlan output;
     std::vector<WatchedRegion> regions;
     bool write_contacts = false;        ///< with snapshots
+    bool shrinks_overlapping = false;   ///< grains that overlap at the start; else they are refused
     std::vector<std::string> warnings;  ///< what is doubtful, but can be used
     std::uint64_t seed = 0;
 };
@@ -61,7 +67,8 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene);
 /// An empty set with the fields that the scene's grains need.
 ParticleSet empty_grains(const GrainSetup& setup);
 
-/// The scene's grains at time 0, on any ranks. Ids are numbered through in order of the bodies.
+/// The scene's grains at time 0, on any ranks. Ids are numbered through in order of the bodies; those of a
+/// file of particle sets keep theirs, counted on from the bodies before. Collective.
 ParticleSet make_grains(const Communicator& comm, const GrainScene& scene);
 
 }  // namespace talus
