@@ -145,6 +145,7 @@ void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
+    auto kept_contacts = exchange_grains();
     if (gravity_) gravity_->begin_step(grains_, responses_);
     if (shear_)
         shear_->drift(grains_, setup_.time_step, places_);

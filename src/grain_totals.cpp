@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "comm/exact_sum.hpp"
+#include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
 #include "src/grain_simulation.hpp"
 

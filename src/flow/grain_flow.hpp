@@ -32,7 +32,7 @@ struct GrainSource {
     std::uint8_t body = 0;  ///< that they belong to
     double density = 0;     ///< [kg/m3]
     BodyShape region;       ///< of their centres
-    GrainSizes sizes;
+    GrainSizes sizes{};
     Point velocity{}, angular_velocity{};                    ///< [m/s], [rad/s]
     bool by_mass = false;                                    ///< `rate` and `total` are masses, not numbers
     double rate = 0;                                         ///< [1/s], [kg/s]

@@ -208,8 +208,9 @@ TEST(SetupGrains, RefusesSourcesAndSinksThatCannotBe) {
     expect_fault("[[wall]]", sink + "normal = [1, 0, 0]\n[[wall]]",
                  "must be 0 along x, where the box is periodic");
     expect_fault("[[wall]]", "[[sink]]\nshape = \"cylinder\"\n[[wall]]", "sink[0].shape");
+}
 
-    std::string sheared_scene(const std::string& box, const std::string& keys_of_grains) {
+std::string sheared_scene(const std::string& box, const std::string& keys_of_grains) {
         std::string text = scene_text;
         const std::size_t wall = text.find("[[wall]]"), run = text.find("[run]");
         text = text.substr(0, wall) + text.substr(run);
