@@ -150,8 +150,7 @@ void GrainSimulation::step() {
     if (shear_)
         shear_->drift(grains_, setup_.time_step, places_);
     else
-        auto kept_contacts = exchange_grains();
-    dem::drift(grains_, setup_.time_step, places_);
+        dem::drift(grains_, setup_.time_step, places_);
     clumps_.drift(grains_, setup_.time_step, places_);
     if (outdated_ || kept_contacts || (gravity_ && gravity_->ends_block()))
         arrange(kept_contacts ? std::move(*kept_contacts) : records_of_contacts(), time_ + setup_.time_step);

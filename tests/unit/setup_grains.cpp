@@ -211,170 +211,169 @@ TEST(SetupGrains, RefusesSourcesAndSinksThatCannotBe) {
 }
 
 std::string sheared_scene(const std::string& box, const std::string& keys_of_grains) {
+    std::string text = scene_text;
+    const std::size_t wall = text.find("[[wall]]"), run = text.find("[run]");
+    text = text.substr(0, wall) + text.substr(run);
+    text.replace(text.find("\"open\"]"), 6, "\"periodic\"");
+    text.replace(text.find("upper"), 5, box + "upper");
+    return text.replace(text.find("radius"), 6, keys_of_grains + "radius");
+}
+
+TEST(ShearedScenes, AddTheShearFlowToTheVelocitiesAtTheStart) {
+    const Communicator comm(MPI_COMM_SELF);
+    const GrainScene scene = read(sheared_scene("shear_rate = 20\n", "velocity = [1, 0, 0]\n"));
+    EXPECT_EQ(scene.simulation.box.shear_rate, 20);
+    const ParticleSet grains = make_grains(comm, scene);
+    ASSERT_GT(grains.size(), 0U);
+    for (std::size_t i = 0; i < grains.size(); ++i)
+        EXPECT_NEAR(grains.data(field::velocity, 0)[i], 1 + 20 * (grains.data(field::position, 1)[i] - 0.05),
+                    1e-12);
+}
+
+TEST(ShearedScenes, WrongOnesAreRefused) {
+    const auto expect = [](const std::string& text, const std::string& fault) {
+        const std::string found = fault_of(text);
+        EXPECT_NE(found.find("box.shear_rate"), std::string::npos) << found;
+        EXPECT_NE(found.find(fault), std::string::npos) << found;
+    };
+    expect(sheared_scene("shear_rate = 20\n", "held = true\n"), "holds no grains that are held");
+    expect(replaced("lower = [0, 0, 0]\nupper", "shear_rate = 20\nlower = [0, 0, 0]\nupper"),
+           "periodic along all axes");
+    expect(replaced("lower = [0, 0, 0]\nupper", "shear_rate = 20\nlower = [0, 0, 0]\nupper"),
+           "holds no walls");
+    expect(sheared_scene("shear_rate = \"20 m\"\n", ""), "s-1");
+}
+
+/// A tetrahedron of 1 mm as an OBJ file; `faces` of it.
+std::string tetrahedron(int faces) {
+    const char* const lines[] = {"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 3 1 4\n"};
+    std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    for (int k = 0; k < faces; ++k) text += lines[k];
+    return text;
+}
+
+class MeshWalls : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = std::filesystem::temp_directory_path() / fmt::format("talus_mesh_walls_{}", getpid());
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    /// The scene in an open box, with this wall in place of the plane.
+    GrainScene read_with(const std::string& wall) const {
         std::string text = scene_text;
-        const std::size_t wall = text.find("[[wall]]"), run = text.find("[run]");
-        text = text.substr(0, wall) + text.substr(run);
-        text.replace(text.find("\"open\"]"), 6, "\"periodic\"");
-        text.replace(text.find("upper"), 5, box + "upper");
-        return text.replace(text.find("radius"), 6, keys_of_grains + "radius");
-    }
-
-    TEST(ShearedScenes, AddTheShearFlowToTheVelocitiesAtTheStart) {
+        const auto put = [&](const std::string& from, const std::string& to) {
+            text.replace(text.find(from), from.size(), to);
+        };
+        put("\"periodic\", \"periodic\", \"open\"", "\"open\", \"open\", \"open\"");
+        put("point = [0, 0, 0]\nnormal = [0, 0, 2]", wall);
         const Communicator comm(MPI_COMM_SELF);
-        const GrainScene scene = read(sheared_scene("shear_rate = 20\n", "velocity = [1, 0, 0]\n"));
-        EXPECT_EQ(scene.simulation.box.shear_rate, 20);
-        const ParticleSet grains = make_grains(comm, scene);
-        ASSERT_GT(grains.size(), 0U);
-        for (std::size_t i = 0; i < grains.size(); ++i)
-            EXPECT_NEAR(grains.data(field::velocity, 0)[i],
-                        1 + 20 * (grains.data(field::position, 1)[i] - 0.05), 1e-12);
+        return read_grain_scene(comm, Scene::parse(text, folder_ / "s.toml"));
+    }
+    void write(const std::string& name, const std::string& content) const {
+        std::ofstream(folder_ / name) << content;
+    }
+    std::string fault_with(const std::string& wall) const {
+        try {
+            read_with(wall);
+        } catch (const SceneError& error) {
+            return error.what();
+        }
+        return "no fault";
     }
 
-    TEST(ShearedScenes, WrongOnesAreRefused) {
-        const auto expect = [](const std::string& text, const std::string& fault) {
-            const std::string found = fault_of(text);
-            EXPECT_NE(found.find("box.shear_rate"), std::string::npos) << found;
-            EXPECT_NE(found.find(fault), std::string::npos) << found;
-        };
-        expect(sheared_scene("shear_rate = 20\n", "held = true\n"), "holds no grains that are held");
-        expect(replaced("lower = [0, 0, 0]\nupper", "shear_rate = 20\nlower = [0, 0, 0]\nupper"),
-               "periodic along all axes");
-        expect(replaced("lower = [0, 0, 0]\nupper", "shear_rate = 20\nlower = [0, 0, 0]\nupper"),
-               "holds no walls");
-        expect(sheared_scene("shear_rate = \"20 m\"\n", ""), "s-1");
-    }
+    std::filesystem::path folder_;
+};
 
-    /// A tetrahedron of 1 mm as an OBJ file; `faces` of it.
-    std::string tetrahedron(int faces) {
-        const char* const lines[] = {"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 3 1 4\n"};
-        std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
-        for (int k = 0; k < faces; ++k) text += lines[k];
-        return text;
-    }
+TEST_F(MeshWalls, AreReadInTheirUnitWithWarnings) {
+    write("closed.obj", tetrahedron(4));
+    const GrainScene closed = read_with("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = \"1 mm\"");
+    const auto& sheet =
+        std::get<std::shared_ptr<const dem::TriangleSurface>>(closed.simulation.walls.at(0).shape);
+    EXPECT_EQ(sheet->mesh().triangles.size(), 4U);
+    EXPECT_DOUBLE_EQ(sheet->upper().x, 0.001);
+    EXPECT_TRUE(closed.warnings.empty());
 
-    class MeshWalls : public testing::Test {
-      protected:
-        void SetUp() override {
-            folder_ = std::filesystem::temp_directory_path() / fmt::format("talus_mesh_walls_{}", getpid());
-            std::filesystem::create_directories(folder_);
-        }
-        void TearDown() override { std::filesystem::remove_all(folder_); }
+    write("open.obj", tetrahedron(3));
+    const GrainScene open = read_with("kind = \"mesh\"\nfile = \"open.obj\"");
+    ASSERT_EQ(open.warnings.size(), 1U);
+    EXPECT_NE(open.warnings[0].find("wall 'floor': "), std::string::npos) << open.warnings[0];
+    EXPECT_NE(open.warnings[0].find("3 edges belong to one triangle only"), std::string::npos)
+        << open.warnings[0];
+}
 
-        /// The scene in an open box, with this wall in place of the plane.
-        GrainScene read_with(const std::string& wall) const {
-            std::string text = scene_text;
-            const auto put = [&](const std::string& from, const std::string& to) {
-                text.replace(text.find(from), from.size(), to);
-            };
-            put("\"periodic\", \"periodic\", \"open\"", "\"open\", \"open\", \"open\"");
-            put("point = [0, 0, 0]\nnormal = [0, 0, 2]", wall);
-            const Communicator comm(MPI_COMM_SELF);
-            return read_grain_scene(comm, Scene::parse(text, folder_ / "s.toml"));
-        }
-        void write(const std::string& name, const std::string& content) const {
-            std::ofstream(folder_ / name) << content;
-        }
-        std::string fault_with(const std::string& wall) const {
-            try {
-                read_with(wall);
-            } catch (const SceneError& error) {
-                return error.what();
-            }
-            return "no fault";
-        }
-
-        std::filesystem::path folder_;
+TEST_F(MeshWalls, FaultsNameTheFile) {
+    const auto expect = [&](const std::string& wall, const std::string& fault) {
+        const std::string found = fault_with(wall);
+        EXPECT_NE(found.find(fault), std::string::npos) << found;
     };
+    expect("kind = \"mesh\"", "wall[0].file");
+    expect("kind = \"mesh\"\nfile = \"none.obj\"", "none.obj");
+    write("empty.obj", "v 0 0 0\n");
+    expect("kind = \"mesh\"\nfile = \"empty.obj\"", "empty.obj");
+    write("closed.obj", tetrahedron(4));
+    expect("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = 0", "wall[0].file_unit = 0");
+}
 
-    TEST_F(MeshWalls, AreReadInTheirUnitWithWarnings) {
-        write("closed.obj", tetrahedron(4));
-        const GrainScene closed = read_with("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = \"1 mm\"");
-        const auto& sheet =
-            std::get<std::shared_ptr<const dem::TriangleSurface>>(closed.simulation.walls.at(0).shape);
-        EXPECT_EQ(sheet->mesh().triangles.size(), 4U);
-        EXPECT_DOUBLE_EQ(sheet->upper().x, 0.001);
-        EXPECT_TRUE(closed.warnings.empty());
+/// What many draws of a distribution give.
+struct Drawn {
+    double least = 1e300, greatest = 0;
+    double volume_below = 0;  ///< share of the volume of radii up to `at`
+    double number_below = 0;  ///< the same of the grains
+};
 
-        write("open.obj", tetrahedron(3));
-        const GrainScene open = read_with("kind = \"mesh\"\nfile = \"open.obj\"");
-        ASSERT_EQ(open.warnings.size(), 1U);
-        EXPECT_NE(open.warnings[0].find("wall 'floor': "), std::string::npos) << open.warnings[0];
-        EXPECT_NE(open.warnings[0].find("3 edges belong to one triangle only"), std::string::npos)
-            << open.warnings[0];
+Drawn drawn(const std::string& keys, double at) {
+    std::string text = replaced("radius = 0.001", keys);
+    text.replace(text.find("3e-6"), 4, "1e-9");
+    const GrainSizes sizes = read(text).bodies[0].sizes;
+    const RandomStream random{7, RandomPurpose::positions, 0};
+    Drawn found;
+    double volume = 0;
+    constexpr std::uint64_t draws = 100000;
+    for (std::uint64_t id = 0; id < draws; ++id) {
+        const double r = sizes.radius(random, id, 3), r3 = r * r * r;
+        found.least = std::min(found.least, r);
+        found.greatest = std::max(found.greatest, r);
+        found.volume_below += r <= at ? r3 : 0;
+        found.number_below += r <= at ? 1.0 / draws : 0;
+        volume += r3;
     }
+    found.volume_below /= volume;
+    return found;
+}
 
-    TEST_F(MeshWalls, FaultsNameTheFile) {
-        const auto expect = [&](const std::string& wall, const std::string& fault) {
-            const std::string found = fault_with(wall);
-            EXPECT_NE(found.find(fault), std::string::npos) << found;
-        };
-        expect("kind = \"mesh\"", "wall[0].file");
-        expect("kind = \"mesh\"\nfile = \"none.obj\"", "none.obj");
-        write("empty.obj", "v 0 0 0\n");
-        expect("kind = \"mesh\"\nfile = \"empty.obj\"", "empty.obj");
-        write("closed.obj", tetrahedron(4));
-        expect("kind = \"mesh\"\nfile = \"closed.obj\"\nfile_unit = 0", "wall[0].file_unit = 0");
-    }
+// Closed forms; 1e5 draws scatter by 1/sqrt(1e5) = 0.003, volume by more: 2.5 of that are allowed, 5 of
+// volume.
+TEST(SetupGrains, SizesAreDistributedAsAskedFor) {
+    Drawn found = drawn("radii = [0.0005, 0.0015]", 0.001);
+    EXPECT_NEAR(found.number_below, 0.5, 0.008);
+    found = drawn("radii = [0.0001, 0.002]\ndistribution = \"volume_uniform\"", 0.00105);
+    EXPECT_NEAR(found.volume_below, 0.5, 0.015);
+    EXPECT_GE(found.least, 0.0001);
+    EXPECT_LE(found.greatest, 0.002);
+    EXPECT_GT(found.greatest, 0.0019);
+    const std::string lognormal = "distribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.5";
+    found = drawn("radii = [1e-6, 0.0021]\n" + lognormal, 0.001);
+    // 0.5 of what is left below ln(2.1)/0.5 = 1.4839 standard deviations, which is 0.93108.
+    EXPECT_NEAR(found.number_below, 0.5 / 0.93108, 0.008);
+    EXPECT_LE(found.greatest, 0.0021);
+    found =
+        drawn("radii = [0.0005, 0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1, 1, 2]", 0.001);
+    EXPECT_NEAR(found.volume_below, 0.5, 0.015);
+    EXPECT_NEAR(found.number_below, 1 - 0.25 / (8 + 1 + 0.25), 0.008);
+}
 
-    /// What many draws of a distribution give.
-    struct Drawn {
-        double least = 1e300, greatest = 0;
-        double volume_below = 0;  ///< share of the volume of radii up to `at`
-        double number_below = 0;  ///< the same of the grains
-    };
-
-    Drawn drawn(const std::string& keys, double at) {
-        std::string text = replaced("radius = 0.001", keys);
-        text.replace(text.find("3e-6"), 4, "1e-9");
-        const GrainSizes sizes = read(text).bodies[0].sizes;
-        const RandomStream random{7, RandomPurpose::positions, 0};
-        Drawn found;
-        double volume = 0;
-        constexpr std::uint64_t draws = 100000;
-        for (std::uint64_t id = 0; id < draws; ++id) {
-            const double r = sizes.radius(random, id, 3), r3 = r * r * r;
-            found.least = std::min(found.least, r);
-            found.greatest = std::max(found.greatest, r);
-            found.volume_below += r <= at ? r3 : 0;
-            found.number_below += r <= at ? 1.0 / draws : 0;
-            volume += r3;
-        }
-        found.volume_below /= volume;
-        return found;
-    }
-
-    // Closed forms; 1e5 draws scatter by 1/sqrt(1e5) = 0.003, volume by more: 2.5 of that are allowed, 5 of
-    // volume.
-    TEST(SetupGrains, SizesAreDistributedAsAskedFor) {
-        Drawn found = drawn("radii = [0.0005, 0.0015]", 0.001);
-        EXPECT_NEAR(found.number_below, 0.5, 0.008);
-        found = drawn("radii = [0.0001, 0.002]\ndistribution = \"volume_uniform\"", 0.00105);
-        EXPECT_NEAR(found.volume_below, 0.5, 0.015);
-        EXPECT_GE(found.least, 0.0001);
-        EXPECT_LE(found.greatest, 0.002);
-        EXPECT_GT(found.greatest, 0.0019);
-        const std::string lognormal = "distribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.5";
-        found = drawn("radii = [1e-6, 0.0021]\n" + lognormal, 0.001);
-        // 0.5 of what is left below ln(2.1)/0.5 = 1.4839 standard deviations, which is 0.93108.
-        EXPECT_NEAR(found.number_below, 0.5 / 0.93108, 0.008);
-        EXPECT_LE(found.greatest, 0.0021);
-        found = drawn("radii = [0.0005, 0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1, 1, 2]",
-                      0.001);
-        EXPECT_NEAR(found.volume_below, 0.5, 0.015);
-        EXPECT_NEAR(found.number_below, 1 - 0.25 / (8 + 1 + 0.25), 0.008);
-    }
-
-    TEST(SetupGrains, RefusesSizesThatCannotBe) {
-        expect_fault("radius = 0.001", "radii = [0.002, 0.001]",
-                     "grains[0].radii = [0.002, 0.001] (must be two radii above 0 in order)");
-        expect_fault("radius = 0.001", "radii = [0.001, 0.002]\ndistribution = \"normal\"", "distribution");
-        expect_fault("radius = 0.001",
-                     "radii = [0.01, 0.02]\ndistribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.2",
-                     "less than a hundredth");
-        expect_fault("radius = 0.001",
-                     "radii = [0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1]",
-                     "as many as radii");
-    }
+TEST(SetupGrains, RefusesSizesThatCannotBe) {
+    expect_fault("radius = 0.001", "radii = [0.002, 0.001]",
+                 "grains[0].radii = [0.002, 0.001] (must be two radii above 0 in order)");
+    expect_fault("radius = 0.001", "radii = [0.001, 0.002]\ndistribution = \"normal\"", "distribution");
+    expect_fault("radius = 0.001",
+                 "radii = [0.01, 0.02]\ndistribution = \"lognormal\"\nmedian = 0.001\ndeviation = 0.2",
+                 "less than a hundredth");
+    expect_fault("radius = 0.001", "radii = [0.001, 0.002]\ndistribution = \"table\"\nvolume_shares = [1]",
+                 "as many as radii");
+}
 
 }  // namespace
 }  // namespace talus::test
