@@ -99,7 +99,7 @@ TEST(GrainGravitySameBits, AfterInterruption) {
     GrainSimulation::add_fields(empty, first.setup());
     GrainSimulation second =
         prepared(world, {PartitionMethod::bisection, 5}, share(std::move(empty), first.grains()));
-    second.resume(first.time(), first.step_count(),
+    second.resume(first.time(), first.step_count(), {},
                   share(dem::empty_contacts(3, GrainSimulation::history_fields(first.setup())), contacts));
     for (int k = 44; k < steps; ++k) second.step();
     EXPECT_EQ(hash_of(world, second), expected);
