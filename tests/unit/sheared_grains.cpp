@@ -68,7 +68,7 @@ TEST(ShearedGrains, CollideAcrossTheBorderAsInTheMiddle) {
         ASSERT_LT(norm(middle.velocity - border.velocity), 1e-8) << "step " << k;
     }
     EXPECT_TRUE(touched);
-    EXPECT_GT(norm(state_of(run, 1).angular_velocity), 25) << "friction has turned it";
+    EXPECT_GT(norm(state_of(run, 1).angular_velocity - dem::Vector3<>{0, 20, 0}), 5) << "no friction";
     EXPECT_LT(norm(state_of(run, 1).angular_velocity - state_of(run, 3).angular_velocity), 1e-6);
 }
 
