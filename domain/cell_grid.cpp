@@ -18,12 +18,13 @@ CellGrid::CellGrid(const Box& box, double radius, int reach) : box_(box), reach_
     covered_radius_ = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < box.dimension; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
-        size_[a] = radius / reach;
+        const double least = box.shear_rate != 0 && axis == 0 ? 2 * radius : radius;
+        size_[a] = least / reach;
         if (box.boundary[a] != Boundary::open) {
-            if (box.length(axis) < radius)
+            if (box.length(axis) < least)
                 throw std::invalid_argument(
-                    fmt::format("box is {} m long along {}, shorter than the interaction radius {} m",
-                                box.length(axis), "xyz"[axis], radius));
+                    fmt::format("box is {} m long along {}, shorter than {}the interaction radius {} m",
+                                box.length(axis), "xyz"[axis], least > radius ? "twice " : "", radius));
             origin_[a] = box.lower[a];
             count_[a] = std::min(static_cast<int>(box.length(axis) / size_[a]), cell_limit);
             size_[a] = box.length(axis) / count_[a];
@@ -59,6 +60,7 @@ std::vector<AxisImage> axis_images(const CellGrid& grid, int axis, int index) {
 }  // namespace
 
 std::vector<Image> CellGrid::images(const Cell& cell) const {
+    if (box_.shear_rate != 0) return sheared_images(cell);
     std::vector<Image> result{Image{cell, {}, {}}};
     for (int axis = 0; axis < box_.dimension; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -72,6 +74,29 @@ std::vector<Image> CellGrid::images(const Cell& cell) const {
                 image.flip[a] = along[k].flip;
                 result.push_back(image);
             }
+    }
+    return result;
+}
+
+/// A displaced cell is counted to the nearest one: its particles lie up to half a cell beside it, which the
+/// double width leaves room for.
+std::vector<Image> CellGrid::sheared_images(const Cell& cell) const {
+    const int displaced = static_cast<int>(std::lround(image_offset_ * inverse_size_[0]));
+    std::vector<Image> result;
+    for (const AxisImage& y : axis_images(*this, 1, cell[1])) {
+        const double turns = std::round(y.shift / box_.length(1));
+        std::vector<AxisImage> along_x = axis_images(*this, 0, cell[0]);
+        if (turns != 0) {
+            along_x.clear();
+            const int lowest = cell[0] + static_cast<int>(turns) * displaced;
+            const int first = (lowest + reach_) / count_[0] + 1;  // turns back, at most
+            for (int turn = -first; lowest + turn * count_[0] < count_[0] + reach_; ++turn)
+                if (const int index = lowest + turn * count_[0]; index >= -reach_)
+                    along_x.push_back({index, turns * image_offset_ + turn * box_.length(0), false});
+        }
+        for (const AxisImage& x : along_x)
+            for (const AxisImage& z : axis_images(*this, 2, cell[2]))
+                result.push_back({{x.index, y.index, z.index}, {x.shift, y.shift, z.shift}, {}});
     }
     return result;
 }

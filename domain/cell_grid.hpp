@@ -42,7 +42,8 @@ class CellGrid {
   public:
     /// `radius`: largest interaction radius [m]; cells are at least radius / reach wide, and along closed
     /// axes a whole number of them fits the box. Throws std::invalid_argument if a closed axis of the box
-    /// is shorter than the radius.
+    /// is shorter than the radius. In a sheared box cells are twice as wide along x, for images across y to
+    /// be counted to the nearest cell, and the box twice as long at least.
     CellGrid(const Box& box, double radius, int reach);
 
     const Box& box() const { return box_; }
@@ -71,6 +72,9 @@ class CellGrid {
         return truncated - (index < truncated ? 1 : 0);
     }
 
+    /// Moves the images across y along x, the upper ones by `offset` [m]; boxes with a shear rate only.
+    void displace_images(double offset) { image_offset_ = offset; }
+
     /// All copies of a cell within `reach` of the box, the original first.
     std::vector<Image> images(const Cell& cell) const;
     /// Whether images() gives more than the original.
@@ -81,8 +85,11 @@ class CellGrid {
     static double ladder_radius(double radius);
 
   private:
+    std::vector<Image> sheared_images(const Cell& cell) const;
+
     Box box_;
     int reach_;
+    double image_offset_ = 0;
     double covered_radius_;
     std::array<double, 3> origin_{}, size_{}, inverse_size_{};
     std::array<int, 3> count_{};

@@ -94,8 +94,12 @@ CheckpointLayout read_layout_together(const Communicator& comm, const std::files
     return deserialized(comm.all_broadcast(std::move(bytes)));
 }
 
+/// Whether a set must have all fields of a file.
+enum class Fields : std::uint8_t { all, those_asked_for };
+
 /// Says what differs between the fields of the file and those that the run needs.
-void check_fields(const std::filesystem::path& file, const StoredSet& stored, const ParticleSet& set) {
+void check_fields(const std::filesystem::path& file, const StoredSet& stored, const ParticleSet& set,
+                  Fields which) {
     const auto fail = [&](const std::string& what) {
         throw std::runtime_error(fmt::format("{}: particle set {}: {}", file.string(), set.name(), what));
     };
@@ -114,7 +118,7 @@ void check_fields(const std::filesystem::path& file, const StoredSet& stored, co
             fail(fmt::format("field {} has another type, shape or unit than this program's", name));
         unused.erase(name);
     }
-    if (!unused.empty())
+    if (which == Fields::all && !unused.empty())
         fail(fmt::format("field {} is in the file, but the scene does not have it", *unused.begin()));
 }
 
@@ -127,6 +131,7 @@ void read_set(const Communicator& comm, const std::filesystem::path& file, const
         const auto column = std::find_if(set.columns().begin(), set.columns().end(), [&](const Column& one) {
             return one.info->role == Role::state && one.info->name == field.name;
         });
+        if (column == set.columns().end()) continue;
         std::vector<std::uint64_t> hashes;
         agree_on(comm, [&] {
             const std::size_t row_bytes = field.extent.row_bytes();
@@ -145,6 +150,20 @@ void read_set(const Communicator& comm, const std::filesystem::path& file, const
                               fmt::format("{}: /sets/{}/{}: damaged, checksum does not match", file.string(),
                                           stored.name, field.name));
     }
+}
+
+/// Finds the set in the file, checks its fields and reads them.
+void read_set(const Communicator& comm, const std::filesystem::path& file, const CheckpointLayout& layout,
+              ParticleSet& set, Fields which) {
+    const auto stored = std::find_if(layout.sets.begin(), layout.sets.end(),
+                                     [&](const StoredSet& one) { return one.name == set.name(); });
+    agree_on(comm, [&] {
+        if (stored == layout.sets.end())
+            throw std::runtime_error(
+                fmt::format("{}: particle set {} is not in it", file.string(), set.name()));
+        check_fields(file, *stored, set, which);
+    });
+    read_set(comm, file, *stored, set);
 }
 
 }  // namespace
@@ -193,21 +212,17 @@ RunState read_checkpoint(const Communicator& comm, const std::filesystem::path& 
         if (layout.sets.size() != sets.size())
             throw AgreedError(exit_input_output, fmt::format("{}: holds {} particle sets, the scene {}",
                                                              file.string(), layout.sets.size(), sets.size()));
-        for (ParticleSet* set : sets) {
-            const auto stored = std::find_if(layout.sets.begin(), layout.sets.end(),
-                                             [&](const StoredSet& one) { return one.name == set->name(); });
-            agree_on(comm, [&] {
-                if (stored == layout.sets.end())
-                    throw std::runtime_error(
-                        fmt::format("{}: particle set {} is not in it", file.string(), set->name()));
-                check_fields(file, *stored, *set);
-            });
-            read_set(comm, file, *stored, *set);
-        }
+        for (ParticleSet* set : sets) read_set(comm, file, layout, *set, Fields::all);
         return layout.state;
     } catch (const AgreedError& failure) {
         throw with_offer(comm, file, failure);
     }
+}
+
+RunState read_particle_set(const Communicator& comm, const std::filesystem::path& file, ParticleSet& set) {
+    const CheckpointLayout layout = read_layout_together(comm, file);
+    read_set(comm, file, layout, set, Fields::those_asked_for);
+    return layout.state;
 }
 
 RunState read_checkpoint_state(const Communicator& comm, const std::filesystem::path& file) {

@@ -29,6 +29,10 @@ void write_particle_sets(const Communicator& comm, const std::filesystem::path& 
 RunState read_checkpoint(const Communicator& comm, const std::filesystem::path& file,
                          const std::vector<ParticleSet*>& sets);
 
+/// Reads one set of a file like the above, which may hold other sets, and of it only the fields that `set`
+/// has. Collective.
+RunState read_particle_set(const Communicator& comm, const std::filesystem::path& file, ParticleSet& set);
+
 /// The run state alone, to build a simulation from its scene before its particles are read. Collective.
 RunState read_checkpoint_state(const Communicator& comm, const std::filesystem::path& file);
 

@@ -23,6 +23,7 @@ std::uint64_t checksum_of(const RunState& state) {
         hash.add(value);
     }
     for (const std::string& name : state.materials) hash.add(std::string_view(name));
+    for (const std::string& name : state.walls) hash.add(std::string_view(name));
     return hash.value();
 }
 
@@ -41,6 +42,7 @@ std::string read_checked_text(hid_t file, const std::string& path) {
 }
 
 std::string material_attribute(std::uint64_t body) { return fmt::format("material_{}", body); }
+std::string wall_attribute(std::uint64_t wall) { return fmt::format("wall_{}", wall); }
 
 RunState read_run_state(hid_t file) {
     RunState state;
@@ -55,6 +57,8 @@ RunState read_run_state(hid_t file) {
     if (hdf5::has_attribute(group, "bodies"))  // not in files of the first programs
         for (std::uint64_t b = 0; b < hdf5::integer_attribute(group, "bodies"); ++b)
             state.materials.push_back(hdf5::text_attribute(group, material_attribute(b)));
+    while (hdf5::has_attribute(group, wall_attribute(state.walls.size())))
+        state.walls.push_back(hdf5::text_attribute(group, wall_attribute(state.walls.size())));
     if (checksum_of(state) != hdf5::integer_attribute(group, "xxh64"))
         throw std::runtime_error("checksum does not match");
     return state;
@@ -152,6 +156,8 @@ void write_run_state(hid_t file, const RunState& state) {
         hdf5::set_attribute(group, "bodies", static_cast<std::uint64_t>(state.materials.size()));
     for (std::size_t b = 0; b < state.materials.size(); ++b)
         hdf5::set_attribute(group, material_attribute(b), state.materials[b]);
+    for (std::size_t w = 0; w < state.walls.size(); ++w)
+        hdf5::set_attribute(group, wall_attribute(w), state.walls[w]);
     hdf5::set_attribute(group, "xxh64", checksum_of(state));
     write_checked_text(file, "/scene", state.scene_text);
     write_checked_text(file, "/resolved_scene", state.resolved_scene);
@@ -196,6 +202,8 @@ std::string serialized(const CheckpointLayout& layout) {
     }
     out.add(static_cast<std::uint64_t>(state.materials.size()));
     for (const std::string& name : state.materials) out.add(name);
+    out.add(static_cast<std::uint64_t>(state.walls.size()));
+    for (const std::string& name : state.walls) out.add(name);
     out.add(static_cast<std::uint64_t>(layout.sets.size()));
     for (const StoredSet& set : layout.sets) {
         out.add(set.name);
@@ -230,6 +238,8 @@ CheckpointLayout deserialized(const std::string& bytes) {
     }
     state.materials.resize(in.integer());
     for (std::string& name : state.materials) name = in.text();
+    state.walls.resize(in.integer());
+    for (std::string& name : state.walls) name = in.text();
     layout.sets.resize(in.integer());
     for (StoredSet& set : layout.sets) {
         set.name = in.text();

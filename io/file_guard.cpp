@@ -95,7 +95,7 @@ Index read_index(const FileReader& reader) {
 }  // namespace
 
 std::uint64_t guard_size(std::size_t regions) {
-    std::uint64_t size = 512;
+    std::uint64_t size = 4096;  // HDF5 wants no less than the alignment of create_file()
     while (size < 256 + 256 * regions) size *= 2;
     return size;
 }

@@ -59,6 +59,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
         largest_radius_ = std::max(largest_radius_, r);
     largest_radius_ = comm_.all_max(largest_radius_);
     reach_ = dem::greatest_reach(setup_.laws, largest_radius_);
+    if (setup_.box.shear_rate != 0) shear_.emplace(setup_.box, places_, setup_.time_step, largest_radius_);
     decomposition_.expect(grains_);
     // Ranks see all that may act on their grains, and the other ends of their bonds and clumps.
     const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
@@ -69,6 +70,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
                  &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
             grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
+    if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
 }
 
 void GrainSimulation::add_fields(ParticleSet& grains) {
@@ -81,6 +83,7 @@ void GrainSimulation::add_fields(ParticleSet& grains) {
 void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
     add_fields(grains);
     if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
+    if (setup.self_gravity) GrainGravity::add_fields(grains);
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
@@ -100,7 +103,7 @@ void GrainSimulation::start() {
     arrange({}, time_);
     if (bonds_.in_use()) join_grains();
     evaluate(0);
-    finish(0);
+    finish(0, gravity_ ? gravity_->start(grains_, *grid_, decomposition_) : dem::Impulse{});
 }
 
 void GrainSimulation::join_grains() {
@@ -122,6 +125,7 @@ void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet&
                              const ParticleSet* bonds) {
     time_ = time;
     step_ = last_balance_ = step;
+    if (shear_) shear_->go_to(step);
     if (bonds)
         bonds_.adopt(dem::read_pairs<dem::bond_values>(comm_, *bonds, dem::BondList::fields(), grains_));
     arrange(dem::read_pairs<dem::most_history>(comm_, contacts, history_fields(setup_), grains_), time_);
@@ -130,13 +134,19 @@ void GrainSimulation::resume(double time, std::uint64_t step, const ParticleSet&
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
-    dem::drift(grains_, setup_.time_step, places_);
+    if (gravity_) gravity_->begin_step(grains_, responses_);
+    if (shear_)
+        shear_->drift(grains_, setup_.time_step, places_);
+    else
+        dem::drift(grains_, setup_.time_step, places_);
     clumps_.drift(grains_, setup_.time_step, places_);
-    if (outdated_) arrange(records_of_contacts(), time_ + setup_.time_step);
+    if (outdated_ || (gravity_ && gravity_->ends_block()))
+        arrange(records_of_contacts(), time_ + setup_.time_step);
     ++step_;
     evaluate(setup_.time_step);
     time_ += setup_.time_step;
-    finish(setup_.time_step);
+    phases_.enter(Phase::gravity);
+    finish(setup_.time_step, gravity_ ? gravity_->end_step(grains_, *grid_, decomposition_) : dem::Impulse{});
     phases_.stop();
 }
 
@@ -145,6 +155,7 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::motion);
     rows_.predict(grains_, time_step);
     clumps_.predict(grains_, time_step, rows_);
+    if (shear_) shear_->place_velocities(grains_, rows_);
     if (bonds_.in_use()) {
         dem::predict_half_step(grains_, time_step);
         decomposition_.halo().begin(grains_,
@@ -161,6 +172,7 @@ void GrainSimulation::evaluate(double time_step) {
     refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
     rows_halo_.finish(rows_.values());
+    if (shear_) shear_->move_copies(rows_);
     phases_.enter(Phase::forces);
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
     if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
@@ -172,15 +184,16 @@ void GrainSimulation::evaluate(double time_step) {
     decomposition_.halo().finish();
 }
 
-void GrainSimulation::finish(double kick_step) {
+void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
     phases_.enter(Phase::motion);
-    const double moved2 =
-        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, kick_step, setup_.time_step),
-                 clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
+    double moved2 = std::max(
+        dem::finish_step(grains_, sums_, responses_, setup_.gravity, impulse, kick_step, setup_.time_step),
+        clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
     if (!std::isfinite(moved2)) refuse_not_finite();
+    if (shear_) moved2 = shear_->moved2(grains_, responses_.start, 2 * largest_radius_ + listed_gap());
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
     std::array<double, 3> greatest{moved2, walls_moved || bonds_.broken() ? 1.0 : 0.0,
@@ -260,6 +273,10 @@ bool GrainSimulation::walls_move() const {
 /// that of the positions [s].
 void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double time) {
     phases_.enter(Phase::decompose);
+    if (shear_) {
+        shear_->bring_back(grains_);
+        grid_->displace_images(shear_->offset());
+    }
     apply_boundaries(grains_, setup_.box);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
     if (interval > 0 && step_ >= last_balance_ + interval) {
@@ -336,6 +353,7 @@ void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& recor
     dem::restore_records(map, id_of, id_of, pairs_);
     std::vector<std::uint8_t> needed = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
     bonds_.mark_copies(grains_.size(), needed);
+    if (shear_) shear_->note_copies(grains_, needed);
     rows_halo_.choose(decomposition_.halo(), grains_.size(), needed);
     poses_ = poses_at(time);
     at_walls_.list(grains_, setup_.walls, poses_, rule);
@@ -385,15 +403,17 @@ std::uint64_t GrainSimulation::bytes_of_lists() const {
 
 void GrainSimulation::reset_counters() {
     evaluated_ = lists_ = 0;
+    if (gravity_) gravity_->reset_counts();
     phases_ = {};
 }
 
 GrainTotals GrainSimulation::totals() const {
-    enum Sum { mass, kinetic, rotational, potential, px, py, pz, sum_count };
+    enum Sum { mass, kinetic, rotational, potential, px, py, pz, lx, ly, lz, sum_count };
     std::vector<ExactSum> sums(sum_count + 3 * setup_.walls.size());
     double greatest_speed2 = 0;
     const double *m = grains_.data(field::mass), *r = grains_.data(field::radius);
     const std::uint8_t* body = grains_.data(field::body);
+    const double* attraction = gravity_ ? grains_.data(field::gravity_potential) : nullptr;
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
     // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
     std::array<std::uint64_t, 5> counts{};
@@ -403,16 +423,25 @@ GrainTotals GrainSimulation::totals() const {
         if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
         const Field<double>&centre = clump ? field::clump_centre : field::position,
               &velocity = clump ? field::clump_velocity : field::velocity;
-        double speed2 = 0, spin2 = 0, potential_per_mass = 0;
+        double speed2 = 0, spin2 = 0, potential_per_mass = attraction ? 0.5 * attraction[i] : 0;
+        std::array<double, 3> x, p;
+        const double flow = dem::shear_flow(setup_.box, grains_.data(field::position, 1)[i]);
         for (int axis = 0; axis < 3; ++axis) {
-            const double v = grains_.data(velocity, axis)[i],
+            const double v = grains_.data(velocity, axis)[i] - (axis == 0 ? flow : 0.0),
                          w = grains_.data(field::angular_velocity, axis)[i];
             speed2 += v * v;
             spin2 += w * w;
             const auto a = static_cast<std::size_t>(axis);
+            x[a] = grains_.data(centre, axis)[i];
+            p[a] = m[i] * v;
             if (setup_.box.boundary[a] != Boundary::periodic)  // where it is, a place has no height
-                potential_per_mass -= g[a] * grains_.data(centre, axis)[i];
-            sums[static_cast<std::size_t>(px + axis)].add(m[i] * v);
+                potential_per_mass -= g[a] * x[a];
+            sums[px + a].add(p[a]);
+            sums[lx + a].add(0.4 * m[i] * r[i] * r[i] * w);
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+            sums[lx + a].add(x[b] * p[c] - x[c] * p[b]);
         }
         sums[mass].add(m[i]);
         sums[kinetic].add(0.5 * m[i] * speed2);
@@ -463,6 +492,7 @@ GrainTotals GrainSimulation::totals() const {
             .rotational_energy = sums[rotational].value(),
             .potential_energy = sums[potential].value(),
             .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
+            .angular_momentum = {sums[lx].value(), sums[ly].value(), sums[lz].value()},
             .greatest_speed = greatest[0],
             .greatest_overlap = greatest[1],
             .grains = total_grains(),

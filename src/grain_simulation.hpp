@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,32 +16,38 @@
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
+#include "physics/dem/shear.hpp"
 #include "physics/dem/wall_contacts.hpp"
+#include "src/grain_gravity.hpp"
 #include "src/phases.hpp"
 
 namespace talus {
 
 /// Everything that defines a run of grains besides the grains: what a scene says, resolved.
 struct GrainSetup {
-    Box box;                                  ///< three-dimensional; open or periodic along each axis
-    dem::AnyLawTable laws;                    ///< of all pairs of materials
-    std::vector<std::uint8_t> material;       ///< of each body of grains, an index into `laws`
-    std::vector<std::uint8_t> held;           ///< one a body: 1 if its grains never move
+    Box box;                             ///< three-dimensional; open or periodic along each axis; a sheared
+                                         ///< one without walls, held grains and clumps
+    dem::AnyLawTable laws;               ///< of all pairs of materials
+    std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
+    std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
     std::vector<dem::ClumpBody> clumps = {};  ///< one a body, or none at all
     std::vector<dem::Wall> walls;
     std::vector<dem::BondRule> bonds{};  ///< which grains are joined at the start; most often none
     dem::Vector3<> gravity;              ///< [m s-2]
-    double time_step = 0;                ///< the same throughout [s]
-    double skin = 0;                     ///< gap up to which pairs are listed [m]; no result depends on it
+    std::optional<SelfGravity> self_gravity{};
+    double time_step = 0;  ///< the same throughout [s]
+    double skin = 0;       ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
 };
 
-/// Totals over all grains, exact sums rounded once: the same bits on any number of ranks.
+/// Totals over all grains, exact sums rounded once: the same bits on any number of ranks. In a sheared box
+/// velocities are counted relative to the flow.
 struct GrainTotals {
     double mass = 0, kinetic_energy = 0, rotational_energy = 0;
-    double potential_energy = 0;  ///< of gravity, relative to the origin [J]
+    double potential_energy = 0;  ///< of gravity, the scene's relative to the origin [J]
     std::array<double, 3> momentum{};
+    std::array<double, 3> angular_momentum{};  ///< about the origin, spin included [kg m2/s]
     double greatest_speed = 0;
     double greatest_overlap = 0;  ///< over the smaller radius [1]
     std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
@@ -74,6 +81,10 @@ class GrainSimulation {
     /// all bounds, or a grain that was lost, left through a wall or moves no finite way. Collective.
     void step();
 
+    /// Whether velocities are of the time of the positions: always, but within a block of steps between two
+    /// impulses of self-gravity. A run can go on only from such a state.
+    bool is_synchronous() const { return !gravity_ || gravity_->is_synchronous(); }
+
     double time() const { return time_; }                  ///< [s]
     double time_step() const { return setup_.time_step; }  ///< [s]
     std::uint64_t step_count() const { return step_; }
@@ -87,6 +98,8 @@ class GrainSimulation {
     std::uint64_t evaluated_contacts() const { return evaluated_; }
     /// Times the list of pairs was made since the counters were reset.
     std::uint64_t list_count() const { return lists_; }
+    /// Work of self-gravity on this rank since the counters were reset, or nothing without.
+    const gravity::Counts* gravity_counts() const { return gravity_ ? &gravity_->counts() : nullptr; }
     /// Memory of pairs, contacts and forces on this rank, besides the fields.
     std::uint64_t bytes_of_lists() const;
     Phases& phases() { return phases_; }
@@ -109,7 +122,7 @@ class GrainSimulation {
     void describe_grains();
     void list_contacts(const std::vector<dem::ContactRecord>& records, double time);
     void evaluate(double time_step);
-    void finish(double kick_step);
+    void finish(double kick_step, const dem::Impulse& impulse);
     std::vector<dem::WallPose> poses_at(double time) const;
     bool walls_move() const;
     void refuse_not_finite();
@@ -124,7 +137,9 @@ class GrainSimulation {
     ParticleSet grains_;
     Decomposition decomposition_;
     std::unique_ptr<CellGrid> grid_;
+    std::optional<GrainGravity> gravity_;
     double largest_radius_ = 0, reach_ = 0;
+    std::optional<dem::Shear> shear_;
     dem::ContactList pairs_;
     dem::WallContacts at_walls_;
     dem::BondList bonds_;

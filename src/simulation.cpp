@@ -119,10 +119,15 @@ void Simulation::enter_late_phase_when_due() {
     const std::vector<Material> before = setup_.materials;
     soften_materials();
     const auto body = std::as_const(particles_).own(field::body);
-    for (std::size_t b = 0; b < before.size(); ++b)
-        keep_pressure(before[b].eos, setup_.materials[b].eos,
-                      std::as_const(particles_).own(field::internal_energy), particles_.own(field::density),
-                      body, static_cast<std::uint8_t>(b));
+    std::uint64_t clipped = 0, first_id = std::numeric_limits<std::uint64_t>::max();
+    for (std::size_t b = 0; b < before.size(); ++b) {
+        const auto places = keep_pressure(before[b].eos, setup_.materials[b].eos,
+                                          std::as_const(particles_).own(field::internal_energy),
+                                          particles_.own(field::density), body, static_cast<std::uint8_t>(b));
+        clipped += places.size();
+        for (const std::size_t i : places) first_id = std::min(first_id, particles_.data(field::id)[i]);
+    }
+    clipped_ = {comm_.all_sum(clipped), comm_.all_min(first_id)};
 }
 
 void Simulation::soften_materials() {

@@ -61,6 +61,11 @@ struct Totals {
     double total_energy() const { return kinetic_energy + internal_energy + potential_energy; }
 };
 
+/// Particles that could not keep their pressure: docs/scene.md, [late_phase].
+struct Clipped {
+    std::uint64_t particles = 0, first_id = 0;
+};
+
 /// One particle set under SPH: solids and gases of one or several bodies.
 class Simulation {
   public:
@@ -82,6 +87,8 @@ class Simulation {
     double time_step() const { return time_step_; }  ///< of the next step [s]
     std::uint64_t step_count() const { return step_; }
     bool in_late_phase() const { return in_late_phase_; }
+    /// What lost pressure when this run entered its late phase.
+    const Clipped& clipped_at_late_phase() const { return clipped_; }
     const ParticleSet& particles() const { return particles_; }
     ParticleSet& particles() { return particles_; }
     const Setup& setup() const { return setup_; }
@@ -134,6 +141,7 @@ class Simulation {
     std::uint64_t step_ = 0, pairs_ = 0;
     sph::PassCount pass_count_;
     bool work_measured_ = false, in_late_phase_ = false;
+    Clipped clipped_;
     double damage_limit_ = std::numeric_limits<double>::infinity();
     sph::StepLimit limit_{};
     Phases phases_;

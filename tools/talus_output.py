@@ -19,6 +19,8 @@ DATASETS = {
     "damage": ("Damage", "Damages"),
     "smoothing_length": ("SmoothingLengths", "SmoothingLength"),
     "mass": ("Masses", "Mass"),
+    "radius": ("Radius", "Radii"),
+    "angular_velocity": ("AngularVelocity", "AngularVelocities"),
     "id": ("ParticleIDs",),
     "body": ("BodyIDs",),
     "remnant": ("Remnant",),

@@ -15,6 +15,7 @@ namespace talus::dem {
 class GrainRows {
   public:
     static constexpr std::size_t width = 12, refreshed = 10;  ///< values a row, and those that change
+    static constexpr std::size_t velocity_at = 4;             ///< place of its first component
     using Pointers = std::array<const double*, lane_count>;
 
     /// For new grains and copies, as they are at rest. `units` [N]: force_unit() of each grain; `material` of

@@ -66,7 +66,7 @@ void predict_half_step(ParticleSet& grains, double time_step) {
 }
 
 double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
-                   const Vector3<>& gravity, double kick_step, double time_step) {
+                   const Vector3<>& gravity, const Impulse& impulse, double kick_step, double time_step) {
     static_assert(sizeof(ForceSum) == 6 * sizeof(double));
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
     const std::array<double, 3> g{gravity.x, gravity.y, gravity.z};
@@ -76,6 +76,7 @@ double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Response
                      dw = components(grains, field::angular_acceleration);
     const double* radius = grains.data(field::radius);
     const ForceSum none{};
+    const bool is_given = impulse.next > 0;
     Lanes most2 = 0, spoilt = 0;  // 0 unless a value is infinite or NaN
     for (std::size_t i = 0; i < grains.size(); i += lane_count) {
         const std::size_t count = std::min(lane_count, grains.size() - i);
@@ -94,15 +95,18 @@ double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Response
         Lanes moved2 = 0;
         for (std::size_t a = 0; a < 3; ++a) {
             const Lanes now = sum(a) * response + select(response > 0, Lanes(g[a]), Lanes(0.0));
-            const Lanes velocity = values(v[a]) + half_kick * (values(dv[a]) + now);
+            const Lanes given =
+                is_given ? select(response > 0, values(impulse.acceleration[a]), Lanes(0.0)) : Lanes(0.0);
+            const Lanes velocity = values(v[a]) + half_kick * (values(dv[a]) + now) + impulse.now * given;
             const Lanes turn = sum(3 + a) * angular;
             const Lanes spin = values(w[a]) + half_kick * (values(dw[a]) + turn);
             store_first(v[a] + i, count, velocity);
             store_first(w[a] + i, count, spin);
             store_first(dv[a] + i, count, now);
             store_first(dw[a] + i, count, turn);
-            const Lanes moved =
-                values(x[a]) + time_step * (velocity + half_step * now) - values(responses.start[a].data());
+            const Lanes moved = values(x[a]) +
+                                time_step * (velocity + impulse.next * given + half_step * now) -
+                                values(responses.start[a].data());
             moved2 += moved * moved;
             spoilt += spin * 0.0;
         }

@@ -44,11 +44,19 @@ struct Responses {
     std::array<std::vector<double>, 3> start;  ///< where each grain was at the time [m]
 };
 
+/// Velocity that grains which are not held are given besides that of forces: `acceleration` times either
+/// time.
+struct Impulse {
+    std::array<const double*, 3> acceleration{};  ///< [m s-2]
+    double now = 0;                               ///< by finish_step() [s]; 0: none
+    double next = 0;                              ///< before the next drift(), by whoever asks for it [s]
+};
+
 /// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`. Sets the
 /// sums to zero for the next evaluation. Returns the square of the largest distance from `responses.start`
 /// that a grain will have after the next drift() of the same time step [m2]; infinite if any value is not
 /// finite.
 double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
-                   const Vector3<>& gravity, double kick_step, double time_step);
+                   const Vector3<>& gravity, const Impulse& impulse, double kick_step, double time_step);
 
 }  // namespace talus::dem

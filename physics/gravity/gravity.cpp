@@ -104,9 +104,10 @@ void Gravity::evaluate_direct(ParticleSet& particles, std::span<double> work_of_
             targets.position[a][i] = source.position[a] =
                 particles.data(field::position, static_cast<int>(a))[i];
         source.mass = particles.data(field::mass)[i];
-        targets.softening[i] = source.softening = settings_.softening_length > 0
-                                                      ? settings_.softening_length
-                                                      : particles.data(field::smoothing_length)[i];
+        targets.softening[i] = source.softening =
+            settings_.softening_length > 0
+                ? settings_.softening_length
+                : settings_.softening_factor * particles.data(*settings_.softening_field)[i];
     }
     std::vector<Numbered> all = comm_.all_gather(std::span<const Numbered>(mine));
     if (size == 0) return;

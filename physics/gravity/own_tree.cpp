@@ -78,7 +78,8 @@ void OwnTree::sort(const ParticleSet& particles, const CellGrid& grid, std::span
     std::sort(cells.begin(), cells.end());
     const double* x[3];
     for (int a = 0; a < 3; ++a) x[a] = particles.data(field::position, a);
-    const double *mass = particles.data(field::mass), *h = particles.data(field::smoothing_length);
+    const double *mass = particles.data(field::mass),
+                 *own_softening = particles.data(*settings.softening_field);
     const double* g[3];
     for (int a = 0; a < 3; ++a) g[a] = particles.data(field::gravity_acceleration, a);
     for (const Place& place : cells) {
@@ -90,7 +91,9 @@ void OwnTree::sort(const ParticleSet& particles, const CellGrid& grid, std::span
         std::sort(within.begin(), within.end());  // particles of a cell are in order of id
         for (const auto& [morton, i] : within) {
             keys_.push_back({place.morton, morton});
-            const double softening = settings.softening_length > 0 ? settings.softening_length : h[i];
+            const double softening = settings.softening_length > 0
+                                         ? settings.softening_length
+                                         : settings.softening_factor * own_softening[i];
             tree_.sources.push_back({{x[0][i], x[1][i], x[2][i]}, mass[i], softening});
             tree_.members.push_back(i);
             tree_.cells.push_back(place.index);

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 
+#include "domain/fields.hpp"
+
 namespace talus::gravity {
 
 /// Constant of gravitation, CODATA 2018 [m3 kg-1 s-2].
@@ -23,8 +25,11 @@ struct Settings {
     double accuracy = 1e-2;       ///< for Opening::relative [1]
     int order = 3;                ///< highest multipole: 1 mass alone, 2 quadrupole, 3 octupole
     bool direct = false;          ///< every pair, for reference: work grows as the square of the particles
-    double softening_length = 0;  ///< in place of every smoothing length [m]; 0: the smoothing lengths
-    double step_factor = 0.25;    ///< C in dt = C sqrt(h/|g|)
+    double softening_length = 0;  ///< in place of every particle's own [m]; 0: their own
+    /// A particle's own softening length is this field of it times this factor.
+    const Field<double>* softening_field = &field::smoothing_length;
+    double softening_factor = 1;
+    double step_factor = 0.25;  ///< C in dt = C sqrt(h/|g|)
     Precision precision = Precision::single_precision;
     int leaf_size = 32;   ///< most particles in a leaf of the tree
     int group_size = 64;  ///< most particles that share a list of interactions

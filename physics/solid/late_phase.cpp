@@ -30,7 +30,7 @@ struct Softener {
     }
 };
 
-constexpr double most_stretched = 0.9, most_compressed = 4;  // of the reference density
+constexpr double most_stretched = 0.9;  // of the reference density
 
 /// Density between the bounds at which the pressure, which grows with it, is `wanted`.
 template <class Eos>
@@ -54,21 +54,24 @@ Material softened(const Material& material, double stiffness) {
     return softer;
 }
 
-void keep_pressure(const EquationOfState& before, const EquationOfState& after,
-                   std::span<const double> internal_energy, std::span<double> density,
-                   std::span<const std::uint8_t> body, std::uint8_t which) {
-    const double reference = reference_density(after);
+std::vector<std::size_t> keep_pressure(const EquationOfState& before, const EquationOfState& after,
+                                       std::span<const double> internal_energy, std::span<double> density,
+                                       std::span<const std::uint8_t> body, std::uint8_t which) {
+    const double reference = reference_density(after), high = most_compressed * reference;
+    std::vector<std::size_t> clipped;
     std::visit(
         [&](const auto& softer) {
             for (std::size_t i = 0; i < density.size(); ++i) {
                 if (body[i] != which) continue;
                 const double u = internal_energy[i], wanted = pressure(before, density[i], u);
                 const double low = std::min(density[i], most_stretched * reference);
-                if (softer.pressure(low, u) < wanted)
-                    density[i] = density_at(softer, wanted, u, low, most_compressed * reference);
+                if (!(softer.pressure(low, u) < wanted)) continue;
+                if (softer.pressure(high, u) < wanted) clipped.push_back(i);
+                density[i] = density_at(softer, wanted, u, low, high);
             }
         },
         after);
+    return clipped;
 }
 
 }  // namespace talus

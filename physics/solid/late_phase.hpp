@@ -1,6 +1,8 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "physics/solid/material.hpp"
 
@@ -15,6 +17,8 @@ struct LatePhase {
     double stiffness;  ///< pressure and shear modulus, in those of the material [1]
 };
 
+inline constexpr double most_compressed = 4;  ///< density over that at rest that keep_pressure() allows
+
 /// The material with its pressure at every density and energy, and its shear modulus, times `stiffness`: warm
 /// rock is free of pressure at the density where it was. Strength and the growth of cracks at a given stress
 /// stay as they are. Throws std::invalid_argument for an ideal gas, whose stiffness is its pressure.
@@ -22,9 +26,10 @@ Material softened(const Material& material, double stiffness);
 
 /// Moves the density of every particle with body == which to where the softened equation of state gives the
 /// pressure that `before` has now, at the same internal energy. Matter that is stretched further than the
-/// softer one could hold (torn or loose) keeps its density.
-void keep_pressure(const EquationOfState& before, const EquationOfState& after,
-                   std::span<const double> internal_energy, std::span<double> density,
-                   std::span<const std::uint8_t> body, std::uint8_t which);
+/// softer one could hold (torn or loose) keeps its density; matter that would have to be denser than
+/// most_compressed times the density at rest loses pressure. Returns the places of such particles.
+std::vector<std::size_t> keep_pressure(const EquationOfState& before, const EquationOfState& after,
+                                       std::span<const double> internal_energy, std::span<double> density,
+                                       std::span<const std::uint8_t> body, std::uint8_t which);
 
 }  // namespace talus

@@ -64,8 +64,11 @@ HandOff hand_off(const Communicator& comm, const HandOffPlan& plan, const Box& b
 /// The exact sums over particles or grains, the latter with their spin. Collective.
 Ledger ledger_of(const Communicator& comm, const ParticleSet& particles);
 
+/// Which pairs count.
+enum class Between : std::uint8_t { all, different_bodies };
+
 /// Collective.
-Overlaps overlaps_of(const Communicator& comm, const ParticleSet& grains);
+Overlaps overlaps_of(const Communicator& comm, const ParticleSet& grains, Between which = Between::all);
 
 /// In words, for the log.
 std::string describe(const HandOff& result);

@@ -33,7 +33,7 @@ std::optional<HandOffPlan> read_hand_off(const Section& root, const std::vector<
     FragmentRules rules;
     rules.all_matter = link == "all";
     if (!rules.all_matter) rules.damage_threshold = table.number("damage_threshold", "1", 1.0, {0, 1, true});
-    const double spacings = table.number("linking_length", "1", default_linking_length, {1, 10});
+    const double spacings = table.number("linking_length", "1", default_linking_length, {0.1, 10});
     for (const Body& body : bodies) rules.linking_length.push_back(spacings * body.spacing);
     plan.groups = rules;
     return plan;

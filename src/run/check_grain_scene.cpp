@@ -13,11 +13,12 @@ namespace talus {
 int check_grain_scene(const Communicator& comm, const Scene& scene) {
     GrainEvolution evolution(comm, scene, {});
     evolution.create({});
-    constexpr int steps = 5;
+    constexpr int blocks = 5;
     const auto began = std::chrono::steady_clock::now();
-    for (int k = 0; k < steps; ++k) evolution.step();
+    for (int k = 0; k < blocks; ++k) evolution.step();
     const double seconds =
-        comm.all_max(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()) / steps;
+        comm.all_max(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count()) /
+        static_cast<double>(evolution.step_count());
     const GrainScene& setup = evolution.setup();
     std::vector<std::uint64_t> counts(setup.bodies.size());
     for (const std::uint8_t body : evolution.particles().own(field::body)) ++counts[body];

@@ -57,6 +57,9 @@ class Evolution {
     /// One time step. Throws AgreedError if the run cannot go on.
     virtual void step() = 0;
 
+    /// What happened at the start or in the last step that a user should know, once; or nothing.
+    virtual std::string news() { return {}; }
+
     virtual double time() const = 0;       ///< [s]
     virtual double time_step() const = 0;  ///< [s]
     virtual std::uint64_t step_count() const = 0;

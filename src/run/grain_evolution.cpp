@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "domain/grain_fields.hpp"
@@ -10,6 +12,22 @@
 #include "src/run/sph_evolution.hpp"
 
 namespace talus {
+
+namespace {
+
+/// Whether it is of interest: without self-gravity and grains of another run walls and boxes change it.
+bool knows_angular_momentum(const GrainScene& scene) {
+    const auto handed = [](const GrainBody& body) { return body.handed.has_value(); };
+    return scene.simulation.self_gravity || std::any_of(scene.bodies.begin(), scene.bodies.end(), handed);
+}
+
+std::string listed(const std::vector<std::string>& walls) {
+    return walls.empty() ? "no walls" : fmt::format("the walls {}", fmt::join(walls, ", "));
+}
+
+double sheared_in_a_step(const GrainSetup& setup) { return setup.box.shear_rate * setup.time_step; }
+
+}  // namespace
 
 std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene,
                                           std::optional<double> until) {
@@ -36,7 +54,19 @@ std::vector<std::string> GrainEvolution::warnings() const {
 
 void GrainEvolution::create(const std::function<void()>&) {
     constexpr double most = 0.2;  // of the smaller radius
-    simulation_.emplace(comm_, setup_.simulation, make_grains(comm_, setup_));
+    ParticleSet grains = make_grains(comm_, setup_);
+    if (setup_.shrinks_overlapping) {
+        shrunk_ = shrink_overlapping(comm_, setup_.simulation.box, grains);
+        constexpr double least = 0.5;  // then no centre was within another grain, if both had one size
+        if (shrunk_.least < least)
+            scene_.root().section("dem").error(
+                "overlaps",
+                fmt::format("grain {} would shrink to {:.3g} of its radius; allowed: {}; join grains "
+                            "that are so close, as hand_off.link does",
+                            shrunk_.id, shrunk_.least, least));
+        scene_.finish();
+    }
+    simulation_.emplace(comm_, setup_.simulation, std::move(grains));
     simulation_->start();
     first_overlap_ = simulation_->totals().greatest_overlap;
     if (first_overlap_ > most)
@@ -50,6 +80,12 @@ void GrainEvolution::create(const std::function<void()>&) {
             "time_step", fmt::format("is {} s, above the stable one of the bonds; allowed: at most {:.4g} s",
                                      simulation_->time_step(), stable));
     scene_.finish();
+}
+
+std::vector<std::string> GrainEvolution::preparations() const {
+    if (shrunk_.grains == 0) return {};
+    return {fmt::format("{} grains that overlapped were made smaller, grain {} most, to {:.3g} of its radius",
+                        shrunk_.grains, shrunk_.id, shrunk_.least)};
 }
 
 ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
@@ -69,6 +105,13 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
         throw AgreedError(exit_input_output,
                           fmt::format("{}: is of grains of {}, this scene has {}", found.file.string(),
                                       fmt::join(found.state.materials, ", "), fmt::join(wanted, ", ")));
+    if (const std::vector<std::string> wanted = walls(); found.state.walls != wanted)
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: is of a scene with {}, this one has {}; what grains remember of walls goes "
+                        "by their order",
+                        found.file.string(), listed(found.state.walls), listed(wanted)));
+    check_shear(found);
     simulation_.emplace(comm_, setup_.simulation, std::move(grains));
     read_contacts_ = std::move(contacts);
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -87,6 +130,11 @@ std::vector<std::string> GrainEvolution::materials() const {
     return names;
 }
 
+void GrainEvolution::step() {
+    do simulation_->step();
+    while (!simulation_->is_synchronous());
+}
+
 void GrainEvolution::save(const WriteSets& write) {
     const ParticleSet contacts = simulation_->save();
     std::vector<const ParticleSet*> sets{&simulation_->grains(), &contacts};
@@ -95,7 +143,34 @@ void GrainEvolution::save(const WriteSets& write) {
     write(sets);
 }
 
-void GrainEvolution::describe(RunState& state) const { state.materials = materials(); }
+std::vector<std::string> GrainEvolution::walls() const {
+    constexpr std::array<const char*, std::variant_size_v<dem::WallShape>> kinds = {
+        "plane", "container", "block", "revolved", "mesh"};
+    std::vector<std::string> names;
+    for (const dem::Wall& wall : setup_.simulation.walls)
+        names.push_back(fmt::format("{} ({})", wall.name, kinds[wall.shape.index()]));
+    return names;
+}
+
+/// Where images across y stand follows from the number of steps.
+void GrainEvolution::check_shear(const ReadCheckpoint& found) const {
+    const auto stored = found.state.numbers.find("sheared_in_a_step");
+    const double then = stored == found.state.numbers.end() ? 0 : stored->second,
+                 now = sheared_in_a_step(setup_.simulation);
+    if (then != now)
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: its box was sheared by {} in a time step, that of this scene is by {}; "
+                        "neither box.shear_rate nor the time step may change",
+                        found.file.string(), then, now));
+}
+
+void GrainEvolution::describe(RunState& state) const {
+    state.materials = materials();
+    state.walls = walls();
+    if (const double sheared = sheared_in_a_step(setup_.simulation); sheared != 0)
+        state.numbers["sheared_in_a_step"] = sheared;
+}
 
 std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
@@ -121,6 +196,9 @@ std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
                                       {"wall_contacts", "1"},
                                       {"coordination", "1"}};
     if (has_bonds()) columns.insert(columns.end(), {{"bonds", "1"}, {"broken_bonds", "1"}});
+    if (knows_angular_momentum(setup_))
+        for (const char axis : {'x', 'y', 'z'})
+            columns.push_back({fmt::format("angular_momentum_{}", axis), "kg m2 s-1"});
     for (const dem::Wall& wall : setup_.simulation.walls)
         for (const char axis : {'x', 'y', 'z'})
             columns.push_back({fmt::format("force_{}_{}", wall.name, axis), "N"});
@@ -144,6 +222,8 @@ Diagnostics GrainEvolution::diagnostics() const {
                                t.coordination};
     if (has_bonds())
         row.insert(row.end(), {static_cast<double>(t.bonds), static_cast<double>(t.broken_bonds)});
+    if (knows_angular_momentum(setup_))
+        row.insert(row.end(), t.angular_momentum.begin(), t.angular_momentum.end());
     for (const auto& force : t.wall_forces) row.insert(row.end(), force.begin(), force.end());
     return {row, 0};
 }

@@ -4,6 +4,7 @@
 #include "src/grain_simulation.hpp"
 #include "src/run/evolution.hpp"
 #include "src/setup/grain_scene.hpp"
+#include "src/setup/shrink_grains.hpp"
 
 namespace talus {
 
@@ -16,12 +17,14 @@ class GrainEvolution : public Evolution {
     const OutputPlan& output() const override { return setup_.output; }
     double end_time() const override { return end_time_; }
     std::vector<std::string> warnings() const override;
+    std::vector<std::string> preparations() const override;
     void create(const std::function<void()>& check_stop) override;
     ReadCheckpoint read(const std::filesystem::path& what,
                         const std::filesystem::path& output_folder) override;
     void start() override {}  // create() does: overlaps are known only then
     void resume(const RunState& state) override;
-    void step() override { simulation_->step(); }
+    /// As many steps as it takes until the state is one to write and to go on from.
+    void step() override;
     double time() const override { return simulation_->time(); }
     double time_step() const override { return simulation_->time_step(); }
     std::uint64_t step_count() const override { return simulation_->step_count(); }
@@ -45,7 +48,9 @@ class GrainEvolution : public Evolution {
 
   private:
     std::vector<std::string> materials() const;
+    void check_shear(const ReadCheckpoint& found) const;
     bool has_bonds() const { return !setup_.simulation.bonds.empty(); }
+    std::vector<std::string> walls() const;
 
     const Communicator& comm_;
     const Scene& scene_;
@@ -53,6 +58,7 @@ class GrainEvolution : public Evolution {
     double end_time_;  ///< [s]
     std::optional<GrainSimulation> simulation_;
     std::optional<ParticleSet> read_contacts_, read_bonds_;  ///< of the checkpoint, until resume()
+    Shrunk shrunk_;                                          ///< at the start
     double first_overlap_ = 0;                               ///< over the radius [1]
 };
 

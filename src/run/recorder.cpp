@@ -128,6 +128,7 @@ void Recorder::begin(Evolution& evolution, double end_time) {
             for (const std::string& note : evolution.preparations()) files_->log->info("{}", note);
         for (const std::string& warning : evolution.warnings()) files_->log->warn("note: {}", warning);
     }
+    tell_news(evolution);
     const std::optional<std::uint64_t> restart_step =
         is_new_ ? std::nullopt : std::optional<std::uint64_t>(evolution.step_count());
     files_->diagnostics = std::make_unique<CsvWriter>(comm_, folder_ / "diagnostics.csv",
@@ -147,6 +148,7 @@ void Recorder::begin(Evolution& evolution, double end_time) {
 void Recorder::after_step(Evolution& evolution) {
     const double time = evolution.time();
     evolution.phases().enter(Phase::output);
+    tell_news(evolution);
     if (fell_due(time_before_, time, output_.diagnostics_interval)) {
         write_diagnostics(evolution);
         files_->performance->write(evolution);
@@ -166,6 +168,12 @@ void Recorder::after_step(Evolution& evolution) {
     time_before_ = time;
     longest_step_ = std::max(longest_step_, std::chrono::duration<double>(now - step_began_).count());
     step_began_ = std::chrono::steady_clock::now();
+}
+
+void Recorder::tell_news(Evolution& evolution) {
+    const std::string news = evolution.news();
+    if (comm_.is_root() && !news.empty())
+        files_->log->warn("note: step {}: {}", evolution.step_count(), news);
 }
 
 void Recorder::stop_early(Evolution& evolution, const std::string& why) {

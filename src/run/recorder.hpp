@@ -45,6 +45,7 @@ class Recorder {
   private:
     struct Files;
 
+    void tell_news(Evolution& evolution);
     void write_checkpoint_now(Evolution& evolution);
     void write_snapshot_now(Evolution& evolution, std::uint64_t index);
     void write_analysis(const Evolution& evolution);

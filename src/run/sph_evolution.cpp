@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "io/checkpoint.hpp"
+#include "physics/solid/late_phase.hpp"
 #include "src/run/restart.hpp"
 #include "src/run/scene_checks.hpp"
 #include "src/run/warnings.hpp"
@@ -16,11 +17,32 @@ SphEvolution::SphEvolution(const Communicator& comm, const Scene& scene, std::op
       scene_(scene),
       setup_(read_scene(comm, scene)),
       end_time_(until.value_or(setup_.output.end_time)) {
-    if (setup_.hand_off) end_time_ = std::min(end_time_, setup_.hand_off->at);
+    if (setup_.hand_off && setup_.hand_off->at < end_time_) {
+        if (until) unused_until_ = *until;
+        end_time_ = setup_.hand_off->at;
+    }
     check_plan(scene, setup_, end_time_);
 }
 
-std::vector<std::string> SphEvolution::warnings() const { return talus::warnings(setup_); }
+std::vector<std::string> SphEvolution::warnings() const {
+    std::vector<std::string> found = talus::warnings(setup_);
+    if (unused_until_)
+        found.push_back(fmt::format("the run ends at hand_off.at = {} s, before --until {} s", end_time_,
+                                    *unused_until_));
+    return found;
+}
+
+std::string SphEvolution::news() {
+    const Clipped& clipped = simulation_->clipped_at_late_phase();
+    if (clipped.particles == 0 || told_of_clipped_) return {};
+    told_of_clipped_ = true;
+    return fmt::format(
+        "late phase: {} particles lose pressure at the change, for they would have to be denser than {} "
+        "times "
+        "their density at rest, the first of them {}; a larger late_phase.stiffness or a later "
+        "late_phase.from?",
+        clipped.particles, most_compressed, clipped.first_id);
+}
 
 void SphEvolution::create(const std::function<void()>& check_stop) {
     ParticleSet particles = make_particles(comm_, setup_);

@@ -38,6 +38,7 @@ class SphEvolution : public Evolution {
     }
     double work() const override { return simulation_->work(); }
     void describe(RunState& state) const override;
+    std::string news() override;
     void save(const WriteSets& write) override { write({&simulation_->particles()}); }
     std::vector<SnapshotField> snapshot_fields() const override;
     std::vector<CsvColumn> diagnostics_columns() const override;
@@ -52,6 +53,9 @@ class SphEvolution : public Evolution {
     const Scene& scene_;
     SceneSetup setup_;
     double end_time_;  ///< [s]
+    std::optional<double>
+        unused_until_;  ///< what the user asked for, if the hand-off ends the run before [s]
+    bool told_of_clipped_ = false;
     std::vector<Settling> settlings_;
     std::optional<Simulation> simulation_;
     std::uint64_t counted_from_ = 0;  ///< step

@@ -84,7 +84,8 @@ double read_spacing(const Section& table, const Body& body, const BodyContext& c
     return first.spacing * std::pow(first.density / body.density, 1.0 / context.dimension);
 }
 
-/// Angular velocity from `spin`, or from a period and an axis.
+}  // namespace
+
 Point read_spin(const Section& table, int dimension) {
     Point spin{};
     if (table.has("spin"))
@@ -100,6 +101,8 @@ Point read_spin(const Section& table, int dimension) {
     }
     return times(2 * std::numbers::pi / period / length, axis);
 }
+
+namespace {
 
 /// Specific internal energy: given, or from a given pressure of a gas.
 double read_energy(const Section& table, const Material& material, double density) {

@@ -7,4 +7,7 @@ namespace talus {
 /// A body's table: shape, resolution and state at the start. Faults are recorded in the scene. Collective.
 Body read_body(const Section& table, const Material& material, const BodyContext& context);
 
+/// Angular velocity from `spin`, or from `spin_period` and `spin_axis` [rad/s].
+Point read_spin(const Section& table, int dimension);
+
 }  // namespace talus

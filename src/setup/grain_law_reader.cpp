@@ -149,7 +149,8 @@ GrainTimeStep GrainLawReader::time_step_of(const GrainBody& body) const {
     constexpr double greatest_share = 0.3, usual_share = 0.1;
     const double r = body.least_radius;
     const dem::GrainMaterial& material = body.material;
-    const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * material.density;
+    const double density = body.least_density.value_or(material.density);
+    const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * density;
     GrainTimeStep limit;
     if (elasticity_ == Elasticity::linear) {
         const double ratio = 0.5 * dem::linear_damping(material.restitution, end_);
@@ -160,7 +161,7 @@ GrainTimeStep GrainLawReader::time_step_of(const GrainBody& body) const {
                              body.name)};
     } else {
         const double rayleigh =
-            dem::rayleigh_time(r, material.density, dem::shear_modulus(material), material.poisson_ratio);
+            dem::rayleigh_time(r, density, dem::shear_modulus(material), material.poisson_ratio);
         limit = {greatest_share * rayleigh, usual_share * rayleigh,
                  fmt::format("{} of the time in which a Rayleigh wave crosses a grain of {:.4g} m of '{}'",
                              greatest_share, r, body.name)};

@@ -8,9 +8,12 @@
 
 #include "domain/grain_fields.hpp"
 #include "domain/random.hpp"
+#include "src/setup/body_reader.hpp"
 #include "src/setup/bond_reader.hpp"
 #include "src/setup/clump_reader.hpp"
 #include "src/setup/grain_law_reader.hpp"
+#include "src/setup/gravity_reader.hpp"
+#include "src/setup/handed_grains.hpp"
 #include "src/setup/material_reader.hpp"
 #include "src/setup/run_reader.hpp"
 #include "src/setup/shape_reader.hpp"
@@ -84,6 +87,24 @@ void read_packing(const Section& table, const BodyContext& context, GrainBody& b
     body.angular_velocity = origin_default(table, "angular_velocity", "rad/s", 3);
 }
 
+/// Grains of particle sets, and what follows from them.
+void take_file(const Communicator& comm, const std::filesystem::path& file, const Section& table,
+               GrainBody& body) {
+    body.handed = read_grains(comm, file, table);
+    body.velocity = origin_default(table, "velocity", "m/s", 3);
+    double least_density = infinity;
+    body.least_radius = infinity;
+    const double* mass = body.handed->data(field::mass);
+    for (const double r : std::as_const(*body.handed).own(field::radius)) {
+        body.least_radius = std::min(body.least_radius, r);
+        body.greatest_radius = std::max(body.greatest_radius, r);
+        least_density = std::min(least_density, *mass++ / (4.0 / 3.0 * std::numbers::pi * r * r * r));
+    }
+    body.least_radius = comm.all_min(body.least_radius);
+    body.greatest_radius = comm.all_max(body.greatest_radius);
+    body.least_density = comm.all_min(least_density);
+}
+
 std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene, const Box& box,
                                    GrainLawReader& laws, std::vector<std::uint8_t>& materials,
                                    std::uint64_t seed) {
@@ -105,7 +126,10 @@ std::vector<GrainBody> read_bodies(const Communicator& comm, const Scene& scene,
                                   .in_impact = false,
                                   .gravitational_constant = 0,
                                   .seed = seed};
-        if (table.has("file")) {
+        body.spin = read_spin(table, 3);
+        if (const auto file = file_of_grains(comm, scene, table)) {
+            take_file(comm, *file, table, body);
+        } else if (table.has("file")) {
             body.listed = read_list(comm, scene, table);
             body.least_radius = infinity;
             for (const auto& row : body.listed) {
@@ -150,6 +174,35 @@ void check_box(const Section& table, const Box& box, double reach) {
     }
 }
 
+/// What knows single spheres only.
+void refuse_with_clumps(const Section& root, const std::vector<GrainBody>& bodies, bool self_gravity,
+                        bool shrinks) {
+    const auto any = [&](auto&& is) { return std::ranges::any_of(bodies, is); };
+    if (!any([](const GrainBody& body) { return body.clump != nullptr; })) return;
+    constexpr std::string_view why = "is for single spheres, and the scene has clumps";
+    if (self_gravity) root.section("gravity").error("", why);
+    if (shrinks) root.section("dem").error("overlaps", why);
+    const std::vector<Section> tables = root.sections("grains");
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        if (bodies[b].handed) tables[b].error("file", why);
+        if (norm(bodies[b].spin) > 0) tables[b].error("spin", why);
+    }
+}
+
+/// The key shear_rate of [box].
+void read_shear(const Section& table, const std::vector<GrainBody>& bodies, bool has_walls, Box& box) {
+    if (!table.has("shear_rate")) return;
+    box.shear_rate = table.number("shear_rate", "s-1");
+    if (std::any_of(box.boundary.begin(), box.boundary.end(),
+                    [](Boundary b) { return b != Boundary::periodic; }))
+        table.error("shear_rate", "only a box that is periodic along all axes can be sheared");
+    if (has_walls) table.error("shear_rate", "a sheared box holds no walls");
+    for (const GrainBody& body : bodies)
+        if (body.held || body.clump)
+            table.error("shear_rate", fmt::format("a sheared box holds no {}, as '{}'",
+                                                  body.held ? "grains that are held" : "clumps", body.name));
+}
+
 }  // namespace
 
 bool is_grain_scene(const Scene& scene) { return scene.root().has("grains"); }
@@ -159,7 +212,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     const std::string title = root.text("title", scene.file().stem().string());
     const auto seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
     root.integer("dimension", 3, 3, 3);
-    const Box box = read_box(root.section("box"), 3);
+    Box box = read_box(root.section("box"), 3);
     GrainLawReader laws(root);
     std::vector<std::uint8_t> material, held;
     std::vector<GrainBody> bodies = read_bodies(comm, scene, box, laws, material, seed);
@@ -171,14 +224,20 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     }
     std::vector<std::string> warnings;
     std::vector<dem::Wall> walls = read_walls({comm, scene, box, greatest}, laws, warnings);
+    read_shear(root.section("box"), bodies, !walls.empty(), box);
     const Section table = root.section("dem"), run = root.section("run");
     const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
+    const bool shrinks = table.choice("overlaps", {"refused", "shrink"}, "refused") == "shrink";
     const OutputPlan output = read_output(root);
     const PartitionMethod partition = read_partition(run);
     const int rebalance_interval = read_rebalance_interval(run);
     const std::vector<double> gravity = table.numbers("gravity", "m s-2", 3, std::vector<double>(3, 0.0));
+    const std::optional<SelfGravity> self_gravity = read_grain_gravity(root, box);
+    refuse_with_clumps(root, bodies, self_gravity.has_value(), shrinks);
     laws.read_pairs();
     const std::vector<dem::BondRule> bonds = read_bonds(root, bodies);
+    if (box.shear_rate != 0 && !bonds.empty())
+        root.section("box").error("shear_rate", "a sheared box holds no grains with bonds");
     const double reach = scene.faulty() ? 0
                                         : std::max(dem::greatest_reach(laws.table(), greatest),
                                                    dem::greatest_bond_reach(bonds, greatest));
@@ -199,6 +258,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
                            .walls = std::move(walls),
                            .bonds = bonds,
                            .gravity = {gravity[0], gravity[1], gravity[2]},
+                           .self_gravity = self_gravity,
                            .time_step = time_step,
                            .skin = skin,
                            .partition = partition,
@@ -207,6 +267,7 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
             .greatest_time_step = limit.greatest,
             .time_step_limit = limit.reason,
             .output = output,
+            .shrinks_overlapping = shrinks,
             .warnings = std::move(warnings),
             .seed = seed};
 }
@@ -263,6 +324,24 @@ void make_sphere(ParticleSet& grains, std::size_t i, const dem::ClumpBody& clump
     dem::place_new_sphere(grains, i, clump, sphere, state);
 }
 
+/// First id behind those of the grains of a file.
+std::uint64_t next_id(const Communicator& comm, std::uint64_t first_id, const ParticleSet& handed) {
+    std::uint64_t behind = 0;
+    for (const std::uint64_t id : handed.own(field::id)) behind = std::max(behind, id + 1);
+    return first_id + comm.all_max(behind);
+}
+
+/// The motion that the scene gives a body besides that of its rows or its file.
+void set_moving(const Communicator& comm, const GrainBody& body, std::size_t begin, ParticleSet& grains) {
+    for (int axis = 0; axis < 3; ++axis)
+        for (std::size_t i = begin; i < grains.size(); ++i) {
+            double& velocity = grains.data(field::velocity, axis)[i];
+            if (body.handed) velocity += body.velocity[static_cast<std::size_t>(axis)];
+            if (body.held) velocity = grains.data(field::angular_velocity, axis)[i] = 0;
+        }
+    if (norm(body.spin) > 0 && !body.held) turn_grains(comm, body.spin, begin, grains);
+}
+
 }  // namespace
 
 ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
@@ -272,6 +351,13 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
     std::uint64_t first_id = 0;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
         const GrainBody& body = scene.bodies[b];
+        const std::size_t first_place = grains.size();
+        if (body.handed) {
+            append_grains(*body.handed, first_id, static_cast<std::uint8_t>(b), grains);
+            set_moving(comm, body, first_place, grains);
+            first_id = next_id(comm, first_id, *body.handed);
+            continue;
+        }
         const RandomStream random{scene.seed, RandomPurpose::positions, static_cast<std::uint16_t>(b)};
         const std::vector<Row> rows = body.listed.empty() ? packed(body, random, first_id) : body.listed;
         const std::size_t spheres = spheres_of(body);
@@ -290,14 +376,16 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
             for (int axis = 0; axis < 3; ++axis) {
                 const auto a = static_cast<std::size_t>(axis);
                 grains.data(field::position, axis)[i] = row[a];
-                grains.data(field::velocity, axis)[i] = body.held ? 0 : row[4 + a];
-                grains.data(field::angular_velocity, axis)[i] = body.held ? 0 : row[7 + a];
+                grains.data(field::velocity, axis)[i] = row[4 + a];
+                grains.data(field::angular_velocity, axis)[i] = row[7 + a];
             }
+            grains.data(field::velocity, 0)[i] += dem::shear_flow(scene.simulation.box, row[1]);
             grains.data(field::radius)[i] = row[3];
             grains.data(field::mass)[i] =
                 4.0 / 3.0 * std::numbers::pi * row[3] * row[3] * row[3] * body.material.density;
         }
         first_id += rows.size() * spheres;
+        if (!body.clump) set_moving(comm, body, first_place, grains);
     }
     return grains;
 }

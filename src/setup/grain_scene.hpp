@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ struct GrainBody {
     std::shared_ptr<const dem::ClumpShape> clump;  ///< that each place of the packing gets, if any
     bool turned = false;                           ///< clumps are, each its own way
     Point velocity{}, angular_velocity{};          ///< [m/s], [rad/s]
+    Point spin{};  ///< of the whole body, besides, about its centre of mass [rad/s]
+    /// Of the grains, if a file says their masses [kg/m3].
+    std::optional<double> least_density;
+    std::optional<ParticleSet> handed;  ///< each rank its share of the grains of a file of particle sets
     /// Rows of a file in place of all that: x y z, radius, velocity, angular velocity.
     std::vector<std::array<double, 10>> listed;
 };
@@ -44,6 +49,7 @@ struct GrainScene {
     double greatest_time_step = 0;  ///< that is stable [s]
     std::string time_step_limit;    ///< what limits it
     OutputPlan output;
+    bool shrinks_overlapping = false;   ///< grains that overlap at the start; else they are refused
     std::vector<std::string> warnings;  ///< what is doubtful, but can be used
     std::uint64_t seed = 0;
 };
@@ -57,7 +63,8 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene);
 /// An empty set with the fields that the scene's grains need.
 ParticleSet empty_grains(const GrainSetup& setup);
 
-/// The scene's grains at time 0, on any ranks. Ids are numbered through in order of the bodies.
+/// The scene's grains at time 0, on any ranks. Ids are numbered through in order of the bodies; those of a
+/// file of particle sets keep theirs, counted on from the bodies before. Collective.
 ParticleSet make_grains(const Communicator& comm, const GrainScene& scene);
 
 }  // namespace talus

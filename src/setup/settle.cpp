@@ -12,6 +12,7 @@
 
 #include "comm/exact_sum.hpp"
 #include "io/progress.hpp"
+#include "src/analysis/hand_off.hpp"
 #include "src/analysis/selection.hpp"
 #include "src/setup/scene_setup.hpp"
 
@@ -174,6 +175,23 @@ void set_going(const Body& body, const Point& shift, const Point& centre_of_mass
     }
 }
 
+/// Bodies that swell or change their form may reach into each other, which their shapes as given did not.
+void refuse_overlap(const Communicator& comm, const std::vector<Body>& bodies, const ParticleSet& particles) {
+    constexpr double closest = 0.5;  // distance over the mean spacing of both
+    ParticleSet points(particles.name(), particles.dimension());
+    points.add(field::body);
+    append(points, particles, kept_fields);
+    points.add(field::radius);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points.data(field::radius)[i] = 0.5 * closest * bodies[points.data(field::body)[i]].spacing;
+    const Overlaps found = overlaps_of(comm, points, Between::different_bodies);
+    if (found.pairs > 0)
+        throw AgreedError(
+            1, fmt::format("bodies overlap once they have settled: {} pairs of particles of different "
+                           "bodies are closer than {} spacings; place them farther apart",
+                           found.pairs, closest));
+}
+
 }  // namespace
 
 std::optional<SettlePlan> read_settle(const Section& root, const std::vector<Body>& bodies,
@@ -201,8 +219,17 @@ std::optional<SettlePlan> read_settle(const Section& root, const std::vector<Bod
         if (std::find(all.begin(), all.end(), name) == all.end())
             table.error("bodies",
                         fmt::format("'{}' is no body that moves (allowed: {})", name, fmt::join(all, ", ")));
-    for (const Body& body : bodies)
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const Body& body = bodies[b];
         plan.bodies.push_back(std::find(names.begin(), names.end(), body.name) != names.end());
+        if (!plan.bodies.back() || !plan.longest) continue;
+        const double quiet = sound_passage(body, simulation.materials[b], simulation.box.dimension);
+        if (*plan.longest < quiet)
+            table.error("longest",
+                        fmt::format("body '{}' must be quiet for {:.4g} s, as long as sound passes "
+                                    "through it; allowed: more than that",
+                                    body.name, quiet));
+    }
     return plan;
 }
 
@@ -256,6 +283,7 @@ std::vector<Settling> settle(const Communicator& comm, const SceneSetup& scene, 
         set_going(body, minus(before.centre, after.centre), before.centre, run.particles());
         append(settled, run.particles(), kept_fields);
     }
+    if (!result.empty() && particles.dimension() == 3) refuse_overlap(comm, scene.bodies, settled);
     particles = std::move(settled);
     return result;
 }

@@ -3,6 +3,7 @@
 usage: program.py PROGRAM MPIRUN RUNS_FOLDER [-k PATTERN]
 Exit codes: 0 done, 1 run-time failure, 2 bad scene or usage, 3 input/output, 75 stopped early with a checkpoint.
 """
+import csv
 import json
 import os
 import pathlib
@@ -13,6 +14,9 @@ import sys
 import tempfile
 import time
 import unittest
+
+import h5py
+import numpy
 
 PROGRAM, MPIRUN, RUNS = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
 SCENE = RUNS / "basalt_impact"
@@ -271,6 +275,10 @@ class Restarts(Case):
         self.assertEqual(run(self.out, 6, "--restart", "latest"), 0)
         self.assertEqual(self.hash(self.out), self.hash(straight))
 
+    def test_settling_cannot_be_over_before_it_may_be_quiet(self):
+        options = [RUNS / "asteroid_collision", "--quick", "--set", "settle.longest=10 s"]
+        self.assert_fails(talus("check", *options), 2, r"settle\.longest.*body 'first' must be quiet for \d")
+
     def test_settling_that_is_stopped_keeps_what_was_there(self):
         options = ["run", RUNS / "asteroid_collision", "--quick", "--steps", "2", "--out", self.out]
         self.assertEqual(talus(*options).returncode, 0)
@@ -293,6 +301,8 @@ class Restarts(Case):
             hashes.add(self.hash(grains))
             grains.unlink()
         self.assertEqual(len(hashes), 1)
+        done = talus(*options, "--set", "hand_off.at=1e-3", "--until", "1e9")
+        self.assertRegex(done.stdout, r"note: the run ends at hand_off\.at = 0\.001 s, before --until 1000000000")
         done = talus(*options, "--set", "hand_off.at=1 d")
         self.assert_fails(done, 2, "hand_off.at = .*after the end of the run")
 
@@ -360,6 +370,65 @@ end_time = 0.1
     def test_overlapping_grains_are_refused_with_their_depth(self):
         done = self.run_grains("0.5,0.5,0.5,0.01\n0.51,0.5,0.5,0.01\n")
         self.assert_fails(done, 2, r"scene\.toml:7: grains.*overlap at the start, by up to 1 of the smaller radius; allowed: 0\.2")
+
+    def test_a_checkpoint_of_other_walls_is_refused(self):
+        done = self.run_grains("0.5,0.5,0.5,0.01\n")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        more = 'name = "floor"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\nmaterial = "jelly"\n'
+        for text in (self.SOFT.replace('"crate"', '"box"'), self.SOFT.replace("[run]", f"[[wall]]\n{more}[run]"),
+                     self.SOFT.replace('"container"', '"block"').replace("upper = [1, 1, 1]", "upper = [0.1, 1, 1]")):
+            done = talus("run", self.scene(text), "--out", self.out, "--restart", "latest")
+            self.assert_fails(done, 3, r"is of a scene with the walls crate \(container\), this one has the walls")
+
+    def diagnostics(self, out):
+        with open(out / "diagnostics.csv", newline="", encoding="utf-8") as file:
+            rows = [{name.split(" ")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+        return rows[0], rows[-1]
+
+    def test_what_a_collision_hands_over_goes_on_as_grains(self):
+        done = talus("run", RUNS / "asteroid_collision", "--quick", "--out", self.out, "--set", "hand_off.to=grains",
+                     "--set", "hand_off.at=20 s", "--set", "hand_off.link=all", "--set", "hand_off.linking_length=0.8")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        scene = self.scene("""[materials.rubble]
+density = 2700
+restitution = 0.3
+friction = 0.6
+[dem]
+law = "linear"
+stiffness = 1e16
+overlaps = "shrink"
+[gravity]
+direct = true
+interval = 10
+[[grains]]
+material = "rubble"
+file = "out/grains.h5"
+[run]
+end_time = "20 s"
+""")
+        on = self.folder / "on"
+        done = talus("run", scene, "--out", on)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"\d+ grains that overlapped were made smaller")
+        handed = self.sums(self.out / "grains.h5")
+        for row in self.diagnostics(on):
+            for name, (value, size) in handed.items():
+                self.assertAlmostEqual(row[name], value, delta=1e-11 * size, msg=name)
+        self.assertGreater(abs(handed["angular_momentum_z"][0]), 0.01 * handed["angular_momentum_z"][1])
+
+    def sums(self, file):
+        """{name: (sum, sum of sizes)} over the grains of a file."""
+        with h5py.File(file) as opened:
+            grains = {name: values[...] for name, values in opened["sets/grains"].items()}
+        mass, radius = grains["mass"][:, None], grains["radius"][:, None]
+        parts = {"momentum": mass * grains["velocity"]}
+        parts["angular_momentum"] = (numpy.cross(grains["position"], parts["momentum"])
+                                     + 0.4 * mass * radius**2 * grains["angular_velocity"])
+        found = {"mass": (mass.sum(), mass.sum())}
+        for name, values in parts.items():
+            size = numpy.linalg.norm(values, axis=1).sum()
+            found |= {f"{name}_{axis}": (values[:, a].sum(), size) for a, axis in enumerate("xyz")}
+        return found
 
     def test_a_list_of_grains_names_its_bad_line(self):
         done = self.run_grains("0.5,0.5,0.5,0.01\n0.5,0.5,0.5\n")

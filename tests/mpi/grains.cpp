@@ -144,6 +144,17 @@ ParticleSet clumps(const Communicator& comm, const GrainSetup& setup) {
     return clump_set(comm, setup, states);
 }
 
+/// Sheared for ever: the images across y move two diameters during the run, half a layer of grains crosses.
+GrainSetup sheared() {
+    GrainSetup setup = rolling_setup();
+    setup.box = {3,
+                 {-0.003, -0.0003, 0.0013},
+                 {0.0993, 0.1016, 0.0731},
+                 {Boundary::periodic, Boundary::periodic, Boundary::periodic},
+                 80};
+    return setup;
+}
+
 std::uint64_t hash_of(const Communicator& comm, GrainSimulation& run) {
     const ParticleSet contacts = run.save();
     const std::uint64_t hash = state_hash(comm, run.grains()) * 31 + state_hash(comm, contacts);
@@ -205,7 +216,7 @@ TEST_P(GrainsSameBits, RunDoesSomething) {
     EXPECT_GT(totals.contacts, bonded ? 5U : 100U);
     EXPECT_EQ(totals.bonds > 300, bonded);
     EXPECT_EQ(totals.broken_bonds > 300, bonded);
-    EXPECT_GT(totals.wall_contacts, 10U);
+    EXPECT_TRUE(totals.wall_contacts > 10U || run.setup().walls.empty());
     EXPECT_GT(run.list_count(), 10U);
     for (std::size_t w = 0; w < pressed.size(); ++w) EXPECT_TRUE(pressed[w]) << run.setup().walls[w].name;
     EXPECT_EQ(hash_of(alone, run), serial_hash_) << "two equal runs differ";
@@ -271,7 +282,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GrainsSameBits,
                                          Tested{"SpheresInADrum", in_a_drum, spheres},
                                          Tested{"StickyOnAFloor", sticky_on_a_floor, spheres},
                                          Tested{"BondedOnAFloor", bonded_on_a_floor, spheres},
-                                         Tested{"ClumpsOnAFloor", clumps_on_a_floor, clumps}),
+                                         Tested{"ClumpsOnAFloor", clumps_on_a_floor, clumps},
+                                         Tested{"Sheared", sheared, spheres}),
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace

@@ -186,12 +186,14 @@ TEST(HandOff, FindsEveryOverlap) {
         mine.data(field::radius)[i] = spheres[k][3];
     }
     Overlaps expected;
+    std::uint64_t of_different = 0;
     for (std::size_t k = 0; k < spheres.size(); ++k)
         for (std::size_t l = 0; l < k; ++l) {
             const auto &a = spheres[k], &b = spheres[l];
             const double overlap = a[3] + b[3] - std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
             if (!(overlap > 0)) continue;
             ++expected.pairs;
+            of_different += (k + l) % 2;
             expected.deepest = std::max(expected.deepest, overlap);
             expected.share = std::max(expected.share, overlap / std::min(a[3], b[3]));
         }
@@ -200,6 +202,11 @@ TEST(HandOff, FindsEveryOverlap) {
     EXPECT_EQ(found.pairs, expected.pairs);
     EXPECT_NEAR(found.deepest, expected.deepest, 1e-14);
     EXPECT_NEAR(found.share, expected.share, 1e-12);
+    mine.add(field::body);
+    for (std::size_t i = 0; i < mine.size(); ++i)
+        mine.data(field::body)[i] = static_cast<std::uint8_t>(mine.data(field::id)[i] % 2);
+    EXPECT_EQ(overlaps_of(comm, mine).pairs, expected.pairs);
+    EXPECT_EQ(overlaps_of(comm, mine, Between::different_bodies).pairs, of_different);
     mine.resize(0);
     EXPECT_EQ(overlaps_of(comm, mine).pairs, 0u);
 }

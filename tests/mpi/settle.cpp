@@ -73,7 +73,7 @@ TEST(Settle, ChangesTheBodiesThatAreNamedAlone) {
 
 TEST(Settle, SaysSoWhenItTakesTooLong) {
     const Communicator comm(MPI_COMM_WORLD);
-    const SceneSetup scene = rock_ball(comm, 200, "[settle]\nlongest = \"20 s\"");
+    const SceneSetup scene = rock_ball(comm, 200, "[settle]\nlongest = \"35 s\"");
     std::string message;
     try {
         settled_particles(comm, scene);
@@ -81,7 +81,7 @@ TEST(Settle, SaysSoWhenItTakesTooLong) {
         message = error.what();
         EXPECT_EQ(error.exit_code, 1);
     }
-    EXPECT_NE(message.find("settling body 'ball': not quiet after settle.longest = 20 s"), std::string::npos)
+    EXPECT_NE(message.find("settling body 'ball': not quiet after settle.longest = 35 s"), std::string::npos)
         << message;
 }
 
@@ -91,6 +91,7 @@ TEST(Settle, RefusesScenesThatCannotSettle) {
              {"[settle]\nbodies = [\"bal\"]", "'bal' is no body that moves (allowed: ball)"},
              {"[settle]\nimbalance = 0", "settle.imbalance"},
              {"[settle]\nlongest = \"20 m\"", "settle.longest"},
+             {"[settle]\nlongest = \"20 s\"", "must be quiet for"},
              {"[settle]\nuntil = 3", "settle.until"}})
         try {
             rock_ball(comm, 100, table);

@@ -21,6 +21,18 @@ dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials) {
         })};
 }
 
+dem::AnyLawTable linear_table(const dem::GrainMaterial& material, double stiffness) {
+    const dem::MaterialPairs pairs({material});
+    using Table = dem::LawTable<dem::LinearSpring>;
+    return Table{dem::PairTable<Table::Law>(1, [&](std::size_t a, std::size_t b) {
+        return Table::Law{dem::linear_spring(pairs(a, b), stiffness, 2.0 / 7, dem::EndOfContact::may_attract),
+                          {material.friction},
+                          {},
+                          {},
+                          {}};
+    })};
+}
+
 GrainSetup grain_setup(const std::vector<dem::GrainMaterial>& materials, double radius, double time_step) {
     GrainSetup setup{.box = {},
                      .laws = hertz_table(materials),

@@ -19,6 +19,10 @@ double mass_of(const GrainState& grain);
 /// A Hertzian law of all pairs of materials, restitution taken as may_attract.
 dem::AnyLawTable hertz_table(const std::vector<dem::GrainMaterial>& materials);
 
+/// The linear law of one material, restitution taken as may_attract. `stiffness` [N/m], two sevenths of it
+/// across.
+dem::AnyLawTable linear_table(const dem::GrainMaterial& material, double stiffness);
+
 /// A scene without walls, gravity or boundaries: one body for each material. The skin is a tenth of the
 /// radius.
 GrainSetup grain_setup(const std::vector<dem::GrainMaterial>& materials, double radius, double time_step);

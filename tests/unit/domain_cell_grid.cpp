@@ -221,5 +221,59 @@ TEST(Images, FillTheSurroundingsOfTheBoxOnce) {
             }
 }
 
+/// Images of a sheared box: whatever two points are within the radius of each other, the displaced copy of
+/// the one stands in a cell within reach of the other's.
+TEST(CellGrid, ShearedImagesStandWithinReach) {
+    Box box{3, {-1, 2, 0}, {1, 3, 0.9}, {Boundary::periodic, Boundary::periodic, Boundary::periodic}, 1};
+    const double radius = 0.22;
+    CellGrid grid(box, radius, 1);
+    EXPECT_GE(grid.cell_size(0), 2 * radius);
+    EXPECT_GE(grid.covered_radius(), radius);
+    const auto cell_of_point = [&](const std::array<double, 3>& x) {
+        return Cell{grid.index_along(0, x[0]), grid.index_along(1, x[1]), grid.index_along(2, x[2])};
+    };
+    constexpr RandomStream draws{.seed = 3};
+    int across = 0;
+    for (std::uint64_t k = 0; k < 4000; ++k) {
+        const double offset = 2 * draws.uniform(k, 6);
+        grid.displace_images(offset);
+        std::array<double, 3> a{}, b{};  // near each other, across boundaries or not
+        for (std::uint32_t c = 0; c < 3; ++c) {
+            a[c] = box.lower[c] + box.length(static_cast<int>(c)) * draws.uniform(k, c);
+            b[c] = a[c] + radius * (2 * draws.uniform(k, 3 + c) - 1);
+        }
+        const double turns = std::floor((b[1] - box.lower[1]) / box.length(1));
+        b[0] -= turns * offset;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double length = box.length(static_cast<int>(c));
+            b[c] -= length * std::floor((b[c] - box.lower[c]) / length);
+        }
+        const Cell own = cell_of_point(a);
+        std::set<std::array<int, 3>> seen;
+        for (const Image& image : grid.images(cell_of_point(b))) EXPECT_TRUE(seen.insert(image.cell).second);
+        for (int x = -3; x <= 3; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    const std::array<double, 3> shift{y * offset + x * 2.0, y * 1.0, z * 0.9};
+                    double distance2 = 0;
+                    for (std::size_t c = 0; c < 3; ++c)
+                        distance2 += (b[c] + shift[c] - a[c]) * (b[c] + shift[c] - a[c]);
+                    if (distance2 > radius * radius) continue;
+                    int found = 0;
+                    for (const Image& image : grid.images(cell_of_point(b))) {
+                        bool same = true, near = true;
+                        for (std::size_t c = 0; c < 3; ++c) {
+                            same &= std::abs(image.shift[c] - shift[c]) < 1e-12;
+                            near &= std::abs(image.cell[c] - own[c]) <= 1;
+                        }
+                        found += same && near ? 1 : 0;
+                    }
+                    EXPECT_EQ(found, 1) << "pair " << k << " at image " << x << " " << y << " " << z;
+                    across += y != 0 ? 1 : 0;
+                }
+    }
+    EXPECT_GT(across, 100);
+}
+
 }  // namespace
 }  // namespace talus

@@ -51,6 +51,21 @@ TEST(LatePhase, KeepsThePressure) {
     EXPECT_NEAR(density[5], 2700, 1e-9);
 }
 
+/// P = 0.01 (A mu + B mu^2) with mu = 3 is the most that four times the density gives.
+TEST(LatePhase, TellsWhatLosesPressure) {
+    const Material stiff = rock(), soft = softened(stiff, 0.01);
+    std::vector<double> density = {2710, 2700 * 2.5, 2700 * 1.5, 2700 * 2.5};
+    const double most = pressure(soft.eos, most_compressed * 2700, 0);
+    const std::vector<std::size_t> expected = {1, 3};
+    ASSERT_GT(pressure(stiff.eos, density[1], 0), most);
+    ASSERT_LT(pressure(stiff.eos, density[0], 0), most);
+    density[2] = 2700 * 1.001;
+    EXPECT_EQ(keep_pressure(stiff.eos, soft.eos, std::vector<double>(4, 0.0), density,
+                            std::vector<std::uint8_t>(4, 0), 0),
+              expected);
+    EXPECT_NEAR(density[1], most_compressed * 2700, 1e-6);
+}
+
 /// Rock warmed by friction is wider than cold rock where it is free of pressure, by as much when it is
 /// softer: else it would swell at the change.
 TEST(LatePhase, ExpandsWarmRockNoMore) {

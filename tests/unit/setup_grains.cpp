@@ -159,6 +159,40 @@ TEST(SetupGrains, OnlyPlanesThatDoNotTurnStandInPeriodicBoxes) {
                  "'container' needs a box that is open along all axes (allowed here: plane)");
 }
 
+std::string sheared_scene(const std::string& box, const std::string& keys_of_grains) {
+    std::string text = scene_text;
+    const std::size_t wall = text.find("[[wall]]"), run = text.find("[run]");
+    text = text.substr(0, wall) + text.substr(run);
+    text.replace(text.find("\"open\"]"), 6, "\"periodic\"");
+    text.replace(text.find("upper"), 5, box + "upper");
+    return text.replace(text.find("radius"), 6, keys_of_grains + "radius");
+}
+
+TEST(ShearedScenes, AddTheShearFlowToTheVelocitiesAtTheStart) {
+    const Communicator comm(MPI_COMM_SELF);
+    const GrainScene scene = read(sheared_scene("shear_rate = 20\n", "velocity = [1, 0, 0]\n"));
+    EXPECT_EQ(scene.simulation.box.shear_rate, 20);
+    const ParticleSet grains = make_grains(comm, scene);
+    ASSERT_GT(grains.size(), 0U);
+    for (std::size_t i = 0; i < grains.size(); ++i)
+        EXPECT_NEAR(grains.data(field::velocity, 0)[i], 1 + 20 * (grains.data(field::position, 1)[i] - 0.05),
+                    1e-12);
+}
+
+TEST(ShearedScenes, WrongOnesAreRefused) {
+    const auto expect = [](const std::string& text, const std::string& fault) {
+        const std::string found = fault_of(text);
+        EXPECT_NE(found.find("box.shear_rate"), std::string::npos) << found;
+        EXPECT_NE(found.find(fault), std::string::npos) << found;
+    };
+    expect(sheared_scene("shear_rate = 20\n", "held = true\n"), "holds no grains that are held");
+    expect(replaced("lower = [0, 0, 0]\nupper", "shear_rate = 20\nlower = [0, 0, 0]\nupper"),
+           "periodic along all axes");
+    expect(replaced("lower = [0, 0, 0]\nupper", "shear_rate = 20\nlower = [0, 0, 0]\nupper"),
+           "holds no walls");
+    expect(sheared_scene("shear_rate = \"20 m\"\n", ""), "s-1");
+}
+
 /// A tetrahedron of 1 mm as an OBJ file; `faces` of it.
 std::string tetrahedron(int faces) {
     const char* const lines[] = {"f 1 3 2\n", "f 1 2 4\n", "f 2 3 4\n", "f 3 1 4\n"};

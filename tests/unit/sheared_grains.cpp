@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "physics/dem/shear.hpp"
+#include "tests/support/grain_scene.hpp"
+
+namespace talus::test {
+namespace {
+
+constexpr double edge = 0.1, rate = 50;
+
+GrainSetup sheared_setup() {
+    GrainSetup setup = grain_setup({{.name = "glass",
+                                     .density = 2500,
+                                     .youngs_modulus = 1e7,
+                                     .poisson_ratio = 0.2,
+                                     .restitution = 0.7,
+                                     .friction = 0.5}},
+                                   0.004, 1e-5);
+    setup.box = {
+        3, {}, {edge, edge, edge}, {Boundary::periodic, Boundary::periodic, Boundary::periodic}, rate};
+    return setup;
+}
+
+/// Place and velocity of grain `second` as grain `first` sees it.
+struct Relative {
+    dem::Vector3<> position, velocity;
+};
+Relative relative(const GrainSimulation& run, std::uint64_t first, std::uint64_t second) {
+    const double offset = std::fmod(rate * edge * run.time(), edge);
+    GrainState a = state_of(run, first), b = state_of(run, second);
+    for (GrainState* grain : {&a, &b}) {
+        const double turns = std::floor(grain->position.y / edge);
+        grain->position.x -= turns * offset;
+        grain->position.y -= turns * edge;
+    }
+    Relative seen{b.position - a.position, b.velocity - a.velocity};
+    const double turns = std::round(seen.position.y / edge);
+    seen.position.x = std::remainder(seen.position.x - turns * offset, edge);
+    seen.position.y -= turns * edge;
+    seen.velocity.x -= turns * rate * edge;
+    return seen;
+}
+
+// Nothing tells a collision in the middle of the box from one whose grains cross the border meanwhile.
+TEST(ShearedGrains, CollideAcrossTheBorderAsInTheMiddle) {
+    const Communicator comm(MPI_COMM_SELF);
+    const GrainSetup setup = sheared_setup();
+    std::vector<GrainState> grains;
+    for (const double up : {0.0, 0.0525}) {
+        GrainState lower{{0.03, 0.0455 + up, 0.05}, {0.5, 0.6, 0}, {10, 0, 30}, 0.004, 2500};
+        GrainState upper{{0.0375, 0.0485 + up, 0.0502}, {-0.5, 0.3, 0.1}, {0, 20, 0}, 0.004, 2500};
+        for (GrainState grain : {lower, upper}) {
+            // Beyond the upper side is the box that moves faster: the velocity of the image within is given.
+            grain.velocity.x += dem::shear_flow(setup.box, grain.position.y);
+            grains.push_back(grain);
+        }
+    }
+    GrainSimulation run(comm, setup, grain_set(comm, grains));
+    run.start();
+    bool touched = false;
+    for (int k = 0; k < 500; ++k) {
+        run.step();
+        touched = touched || run.totals().contacts == 2;
+        const Relative middle = relative(run, 0, 1), border = relative(run, 2, 3);
+        ASSERT_LT(norm(middle.position - border.position), 1e-12) << "step " << k;
+        ASSERT_LT(norm(middle.velocity - border.velocity), 1e-8) << "step " << k;
+    }
+    EXPECT_TRUE(touched);
+    EXPECT_GT(norm(state_of(run, 1).angular_velocity - dem::Vector3<>{0, 20, 0}), 5) << "no friction";
+    EXPECT_LT(norm(state_of(run, 1).angular_velocity - state_of(run, 3).angular_velocity), 1e-6);
+}
+
+// A grain that nothing touches comes through the upper side four times, each time slower by the images'
+// velocity.
+TEST(ShearedGrains, SlowDownWhereTheyComeBackIn) {
+    const Communicator comm(MPI_COMM_SELF);
+    GrainSetup setup = sheared_setup();
+    setup.time_step = 1e-4;
+    GrainState grain{{0.03, 0.07, 0.05}, {dem::shear_flow(setup.box, 0.07), 2, 0}, {}, 0.004, 2500};
+    GrainSimulation run(comm, setup, grain_set(comm, {grain}));
+    run.start();
+    for (int k = 0; k < 2000; ++k) run.step();  // 0.4 m up
+    EXPECT_NEAR(state_of(run, 0).velocity.x, dem::shear_flow(setup.box, 0.07) - 4 * rate * edge, 1e-9);
+    EXPECT_NEAR(run.totals().momentum[1], 2 * mass_of(grain), 1e-12);
+}
+
+}  // namespace
+}  // namespace talus::test
