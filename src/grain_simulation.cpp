@@ -74,8 +74,8 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
 }
 
-/// Cells across the distance that is searched: where most grains are much smaller, wider ones would be too few
-/// to spread over the ranks.
+/// Cells across the distance that is searched: where most grains are much smaller, wider ones would be too
+/// few to spread over the ranks.
 int GrainSimulation::cells_within(double searched) const {
     constexpr double most = 4;
     ExactSum sum;
