@@ -62,7 +62,7 @@ GrainSetup setup_under() {
 std::vector<GrainState> mixture() {
     const std::vector<GrainState> places = cloud();
     std::vector<GrainState> mixed;
-    for (std::size_t k = 0; k < 300; ++k) {
+    for (std::size_t k = 0; k < 150; ++k) {
         if (k % 3 == 0) {
             mixed.push_back(places[k]);
             continue;
