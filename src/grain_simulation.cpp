@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
 #include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
@@ -69,14 +70,28 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     decomposition_.expect(grains_);
     // Ranks see all that may act on their grains, and the other ends of their bonds and clumps.
     const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
-    grid_ = std::make_unique<CellGrid>(
-        setup_.box, std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent()), 1);
+    const double searched =
+        std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent());
+    grid_ = std::make_unique<CellGrid>(setup_.box, searched, cells_within(searched));
     if (bonds_.in_use())
         for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
                  &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
             grains_.add(*info);
     decomposition_.divide(grains_, *grid_);
     if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
+}
+
+/// Cells across the distance that is searched: where most grains are much smaller, wider ones would be too
+/// few to spread over the ranks.
+int GrainSimulation::cells_within(double searched) const {
+    if (setup_.box.shear_rate != 0) return 1;  // displaced images are counted to the nearest cell
+    constexpr double most = 4;
+    ExactSum sum;
+    for (const double r : std::as_const(grains_).own(field::radius)) sum.add(r);
+    ExactSum::all_reduce(comm_, std::span<ExactSum>(&sum, 1));
+    const double mean = sum.value() / static_cast<double>(std::max<std::uint64_t>(total_grains(), 1));
+    const double gap = searched - 2 * largest_radius_;
+    return mean > 0 ? static_cast<int>(std::clamp(searched / (2 * mean + gap), 1.0, most)) : 1;
 }
 
 void GrainSimulation::add_fields(ParticleSet& grains) {

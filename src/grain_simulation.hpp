@@ -136,6 +136,7 @@ class GrainSimulation {
     std::vector<dem::ContactRecord> records_below(std::size_t end) const;
     void describe_grains();
     void list_contacts(const std::vector<dem::ContactRecord>& records, double time);
+    int cells_within(double searched) const;
     void evaluate(double time_step);
     void finish(double kick_step, const dem::Impulse& impulse);
     void settle();

@@ -11,7 +11,8 @@ import numpy as np
 
 DEVELOP = ["dem.time_step='8e-6 s'", "output.snapshots=0", "output.diagnostics=1", "output.checkpoints=0"]
 WARM = 60  # steps before the measured ones
-LENGTH = {"x": 0.08, "y": 0.04, "z": 0.2}  # of the scene's box [m]
+WIDTHS = {1: (0.08, 0.04), 8: (0.16, 0.16)}  # along x and y: the scene's box, and one of eight times the area [m]
+HEIGHT = 0.2
 
 # Hertz and Mindlin with history. `granular` has the same law as Talus and LIGGGHTS (its damping is stated by another
 # number: sqrt(5) B(0.6) = alpha(0.48113)), `gran/hertz/history` is cheaper: no damping that follows from a restitution.
@@ -50,7 +51,13 @@ def liggghts_input(data, skin, steps):
                       f"run {steps}", ""])
 
 
-def write_data(checkpoint, file):
+def wider(times):
+    """Settings that make the scene so many times as wide."""
+    x, y = WIDTHS[times]
+    return [f"box.upper=[{x}, {y}, {HEIGHT}]", f"grains[0].upper=[{x}, {y}, 0.0042]", f"grains[1].upper=[{x}, {y}, 0.1037]"]
+
+
+def write_data(checkpoint, file, times):
     """The grains of a checkpoint as LAMMPS reads them; type 1 is the bed."""
     with h5py.File(checkpoint) as source:
         grains = source["sets/grains"]
@@ -59,7 +66,7 @@ def write_data(checkpoint, file):
     order = np.lexsort((place[:, 0] // 4e-3, place[:, 1] // 4e-3, place[:, 2] // 4e-3))  # as good for them as for us
     with open(file, "w") as out:
         out.write(f"chute\n\n{len(place)} atoms\n2 atom types\n\n")
-        out.writelines(f"0 {length} {axis}lo {axis}hi\n" for axis, length in LENGTH.items())
+        out.writelines(f"0 {length} {axis}lo {axis}hi\n" for axis, length in zip("xyz", (*WIDTHS[times], HEIGHT)))
         out.write("\nAtoms\n\n")
         for k, i in enumerate(order):
             out.write(f"{k + 1} {fields['body'][i] + 1} {2 * fields['radius'][i]} 2500 {' '.join(map(repr, place[i].tolist()))}\n")
@@ -77,14 +84,15 @@ def run(line, environment, **where):
 
 
 class Peers:
-    def __init__(self, program, scene, folder, environment, options):
+    def __init__(self, program, scene, folder, environment, options, times):
         self.program, self.scene, self.folder, self.environment, self.steps = program, scene, folder, environment, options.steps
-        self.state = folder / "developed"
-        settings = [word for setting in DEVELOP for word in ("--set", setting)]
+        self.state = folder / f"developed_{times}"
+        self.wider = [word for setting in wider(times) for word in ("--set", setting)]
+        settings = self.wider + [word for setting in DEVELOP for word in ("--set", setting)]
         self.run_talus(1, ["--steps", options.develop, "--out", self.state, *settings])
         checkpoint = max(self.state.glob("checkpoint_*.h5"))
         self.first_step = int(checkpoint.stem.split("_")[1])
-        self.grains = write_data(checkpoint, folder / "chute.data")
+        self.grains = write_data(checkpoint, folder / "chute.data", times)
 
     def run_talus(self, ranks, arguments):
         return run(["mpirun", "-n", ranks, self.program, "run", self.scene, *arguments], self.environment)
@@ -93,7 +101,7 @@ class Peers:
         out = self.folder / "run"
         shutil.rmtree(out, ignore_errors=True)
         shutil.copytree(self.state, out)
-        quiet = ["--set", "output.snapshots=0", "--set", "output.diagnostics=1", "--set", "output.checkpoints=0", "--out", out,
+        quiet = [*self.wider, "--set", "output.snapshots=0", "--set", "output.diagnostics=1", "--set", "output.checkpoints=0", "--out", out,
                  "--restart", "latest", "--steps"]
         self.run_talus(ranks, [*quiet, self.first_step + WARM])
         self.run_talus(ranks, [*quiet, self.first_step + WARM + self.steps])
@@ -114,19 +122,24 @@ class Peers:
 
 
 def compare(program, scene, folder, environment, options):
-    peers = Peers(program, scene, folder, environment, options)
     found = {}
-    for ranks in (1, 2):
-        cases = {"talus": lambda ranks=ranks: peers.talus(ranks)}
-        for name in (*LAMMPS_STYLES, "liggghts"):
-            cases[name] = lambda name=name, ranks=ranks: peers.peer(name, ranks)
-        rates = {name: [] for name in cases}
-        for _ in range(options.rounds):
-            for name, case in cases.items():
-                rates[name].append(case())
-        for name, values in rates.items():
-            found[name, ranks] = statistics.median(values)
-            print(f"peer {name} ranks {ranks} grains {peers.grains} rate {found[name, ranks]:.4g}")
-        fastest = max(found[name, ranks] for name in ("lammps", "liggghts"))
-        print(f"ratio {found['talus', ranks] / fastest:.3g}")
-    return {"cases": {f"{name}, {ranks} ranks": rate for (name, ranks), rate in found.items()}}
+    for times in options.times:
+        peers = Peers(program, scene, folder, environment, options, times)
+        for ranks in (1, 2):
+            found.update(compare_on(ranks, peers, options))
+    return {"cases": found}
+
+
+def compare_on(ranks, peers, options):
+    cases = {"talus": lambda: peers.talus(ranks)}
+    for name in (*LAMMPS_STYLES, "liggghts"):
+        cases[name] = lambda name=name: peers.peer(name, ranks)
+    rates = {name: [] for name in cases}
+    for _ in range(options.rounds):
+        for name, case in cases.items():
+            rates[name].append(case())
+    medians = {name: statistics.median(values) for name, values in rates.items()}
+    for name, rate in medians.items():
+        print(f"peer {name} ranks {ranks} grains {peers.grains} rate {rate:.4g}")
+    print(f"ratio {medians['talus'] / max(medians['lammps'], medians['liggghts']):.3g}")
+    return {f"{name}, {ranks} ranks, {peers.grains} grains": rate for name, rate in medians.items()}

@@ -11,17 +11,23 @@
 
 namespace talus::dem {
 
+namespace {
+
+/// With less room to spare than vectors take by themselves.
+template <class T>
+void grow(std::vector<T>& values, std::size_t size) {
+    constexpr std::size_t share = 8;
+    if (size > values.capacity()) values.reserve(size + size / share);
+    values.resize(size);
+}
+
+}  // namespace
+
 void Contacts::reserve(std::size_t more) {
-    constexpr double slack = 1.125;  // less than vectors take by themselves
     const std::size_t least = count + more + lane_count;
     if (pair.size() >= least) return;
-    const auto room = std::max(least, static_cast<std::size_t>(slack * static_cast<double>(pair.size())));
-    const auto grow = [room](auto& values) {
-        values.reserve(room);
-        values.resize(room);
-    };
-    grow(pair);
-    for (std::vector<double>& values : history) grow(values);
+    grow(pair, least);
+    for (std::vector<double>& values : history) grow(values, least);
 }
 
 void Contacts::close() {
@@ -97,8 +103,8 @@ class ListedPairs {
             place[c] = chunk.up_to[c - 1];
             chunk.up_to[c] = static_cast<std::uint16_t>(chunk.up_to[c] + chunk.up_to[c - 1]);
         }
-        list_.first.resize(chunk.begin + pairs.size());
-        list_.second.resize(chunk.begin + pairs.size());
+        grow(list_.first, chunk.begin + pairs.size());
+        grow(list_.second, chunk.begin + pairs.size());
         for (std::size_t k = 0; k < pairs.size(); ++k) {
             const std::size_t p = chunk.begin + place[of_class[k]]++;
             list_.first[p] = pairs[k].first;

@@ -113,19 +113,32 @@ SizeLevels::Range SizeLevels::reached(const Level& from, const CellEntry& cell, 
     return range;
 }
 
-void SizeLevels::find_runs(const Level& level, const Range& range, std::vector<Run>& runs) {
-    runs.clear();
-    auto at = level.cells.begin();
+void SizeLevels::find_runs(const Level& level, const Range& range, std::vector<std::size_t>& hints,
+                           std::vector<Run>& runs) {
+    const std::vector<CellEntry>& cells = level.cells;
     const auto before = [](const CellEntry& cell, CellKey key) { return cell.key < key; };
+    const auto first_from = [&](CellKey key, std::size_t hint) {
+        constexpr std::size_t few = 8;
+        if (hint > 0 && cells[hint - 1].key >= key) hint = 0;  // ranges went back
+        const std::size_t near = std::min(hint + few, cells.size());
+        for (; hint < near; ++hint)
+            if (cells[hint].key >= key) return hint;
+        const auto at =
+            std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(near), cells.end(), key, before);
+        return static_cast<std::size_t>(at - cells.begin());
+    };
+    runs.clear();
+    std::size_t row = 0;
     for (int z = range.lowest[2]; z <= range.highest[2]; ++z)
-        for (int y = range.lowest[1]; y <= range.highest[1]; ++y) {
+        for (int y = range.lowest[1]; y <= range.highest[1]; ++y, ++row) {
+            if (row == hints.size()) hints.push_back(0);
+            hints[row] = first_from(key_of({range.lowest[0], y, z}), hints[row]);
             const CellKey last = key_of({range.highest[0], y, z});
-            at = std::lower_bound(at, level.cells.end(), key_of({range.lowest[0], y, z}), before);
-            for (; at != level.cells.end() && at->key <= last; ++at) {
-                if (!runs.empty() && runs.back().end == at->begin)
-                    runs.back().end = at->end;
+            for (std::size_t c = hints[row]; c < cells.size() && cells[c].key <= last; ++c) {
+                if (!runs.empty() && runs.back().end == cells[c].begin)
+                    runs.back().end = cells[c].end;
                 else
-                    runs.push_back({at->begin, at->end});
+                    runs.push_back({cells[c].begin, cells[c].end});
             }
         }
 }

@@ -48,10 +48,11 @@ class SizeLevels {
         for (std::size_t l = 0; l < levels_.size(); ++l)
             for (std::size_t above = 0; above <= l; ++above) {
                 std::vector<Run> runs;
-                Range before{{1}, {0}};  // no cell's
+                std::vector<std::size_t> hints;  // of the rows of cells last looked into
+                Range before{{1}, {0}};          // no cell's
                 for (const CellEntry& cell : levels_[l].cells) {
                     const Range range = reached(levels_[l], cell, levels_[above]);
-                    if (range != before) find_runs(levels_[above], range, runs);
+                    if (range != before) find_runs(levels_[above], range, hints, runs);
                     before = range;
                     if (runs.empty()) continue;
                     for (std::uint32_t k = cell.begin; k < cell.end; ++k)
@@ -79,7 +80,8 @@ class SizeLevels {
 
     static Level sorted_level(const ParticleSet& grains, std::vector<std::uint32_t> members, double margin);
     Range reached(const Level& from, const CellEntry& cell, const Level& into) const;
-    static void find_runs(const Level& level, const Range& range, std::vector<Run>& runs);
+    static void find_runs(const Level& level, const Range& range, std::vector<std::size_t>& hints,
+                          std::vector<Run>& runs);
 
     template <class Visit>
     void visit_near(const Level& from, std::uint32_t k, const Level& into, std::span<const Run> runs,

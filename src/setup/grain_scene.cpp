@@ -230,9 +230,10 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
                               .seed = seed};
     std::vector<GrainBody> bodies = read_bodies(context, laws, material);
     GrainFlowPlan flow = read_flow(root, context, laws, bodies, material);
-    double greatest = 0, widest = 0;
+    double greatest = 0, widest = 0, usual = infinity;
     for (const GrainBody& body : bodies) {
         held.push_back(body.held ? 1 : 0);
+        usual = std::min(usual, std::max(body.least_radius, body.sizes.median));
         greatest = std::max(greatest, body.greatest_radius);
         if (body.clump) widest = std::max(widest, body.clump->bounding_radius);
     }
@@ -240,7 +241,8 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     std::vector<dem::Wall> walls = read_walls({comm, scene, box, greatest}, laws, warnings);
     read_shear(root.section("box"), bodies, !walls.empty(), box);
     const Section table = root.section("dem"), run = root.section("run");
-    const double skin = table.number("skin", "m", 0.3 * greatest > 0 ? 0.3 * greatest : 1.0, positive);
+    const double skin =
+        table.number("skin", "m", 0 < usual && usual < infinity ? 0.3 * usual : 1.0, positive);
     const bool shrinks = table.choice("overlaps", {"refused", "shrink"}, "refused") == "shrink";
     const OutputPlan output = read_output(root);
     const PartitionMethod partition = read_partition(run);

@@ -58,6 +58,27 @@ GrainSetup setup_under() {
     return setup;
 }
 
+/// Of sizes up to 1:5.5, on three levels: large ones, and small ones in the corners of the other places.
+std::vector<GrainState> mixture() {
+    const std::vector<GrainState> places = cloud();
+    std::vector<GrainState> mixed;
+    for (std::size_t k = 0; k < 150; ++k) {
+        if (k % 3 == 0) {
+            mixed.push_back(places[k]);
+            continue;
+        }
+        for (int corner = 0; corner < 8; ++corner) {
+            const auto side = [corner](int bit) { return (corner >> bit & 1) != 0 ? 0.0026 : -0.0024; };
+            GrainState small = places[k];
+            small.position += dem::Vector3<>{side(0), side(1), side(2)};
+            small.radius = corner % 3 == 0 ? 0.0024 : 0.0009;
+            small.velocity.x += 0.3 * corner;
+            mixed.push_back(small);
+        }
+    }
+    return mixed;
+}
+
 GrainSetup rolling_setup() {
     return setup_under<dem::LawTable<dem::HertzMindlin, dem::ElasticPlasticRolling>>();
 }
@@ -164,6 +185,8 @@ GrainSetup clumps_on_a_floor() {
 }
 
 ParticleSet spheres(const Communicator& comm, const GrainSetup&) { return grain_set(comm, cloud()); }
+
+ParticleSet many_sizes(const Communicator& comm, const GrainSetup&) { return grain_set(comm, mixture()); }
 
 ParticleSet clumps(const Communicator& comm, const GrainSetup& setup) {
     std::vector<dem::ClumpState> states;
@@ -314,6 +337,7 @@ TEST_P(GrainsSameBits, AfterInterruption) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GrainsSameBits,
                          testing::Values(Tested{"SpheresOnAFloor", on_a_floor, spheres},
+                                         Tested{"MixtureOnAFloor", on_a_floor, many_sizes},
                                          Tested{"SpheresInADrum", in_a_drum, spheres},
                                          Tested{"StickyOnAFloor", sticky_on_a_floor, spheres},
                                          Tested{"BondedOnAFloor", bonded_on_a_floor, spheres},

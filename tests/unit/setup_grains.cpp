@@ -213,7 +213,7 @@ TEST(SetupGrains, SourcesAreBodiesOfTheirOwn) {
     EXPECT_EQ(flow.sources[0].body, 1);
     EXPECT_EQ(flow.sources[0].sizes.greatest, 0.003);
     EXPECT_FALSE(flow.sources[0].by_mass);
-    EXPECT_EQ(scene.simulation.skin, 0.3 * 0.003) << "for the largest that may come";
+    EXPECT_EQ(scene.simulation.skin, 0.3 * 0.001) << "for the smallest";
     ASSERT_EQ(flow.sinks.size(), 1U);
     EXPECT_EQ(flow.sinks[0].interval, 100U);
     EXPECT_TRUE(flow.sinks[0].region.contains({0, 0, 0.009}));
