@@ -319,7 +319,8 @@ Decomposition::Ledger GrainFlow::insert(ParticleSet& grains, const FlowMoment& n
     }
 
     Decomposition::Ledger added;
-    grains.resize(grains.size());  // copies would be taken for new grains
+    if (accepted.empty()) return added;  // the set stays as it is, with its copies
+    grains.resize(grains.size());        // copies would be taken for new grains
     for (const Candidate& grain : accepted) {
         const GrainSource& source = plan_.sources[grain.source];
         const std::uint64_t id = next_id_++;

@@ -175,6 +175,16 @@ GrainSetup in_a_drum() {
     return setup;
 }
 
+/// The rain of come_and_go() into that drum, and a hole where its sheet is drawn through.
+GrainSetup come_and_go_in_a_drum() {
+    GrainSetup setup = in_a_drum();
+    setup.flow = come_and_go().flow;
+    setup.flow.sinks.pop_back();
+    setup.flow.sinks[0].region = {SphereShape{{0.046, 0.046, 0.004}, 0.012}, false};
+    setup.flow.sources[0].region = BoxShape{{0.02, 0.01, 0.05}, {0.07, 0.08, 0.085}};
+    return setup;
+}
+
 /// The first, with clumps of three spheres of two sizes in place of spheres.
 GrainSetup clumps_on_a_floor() {
     GrainSetup setup = on_a_floor();
@@ -344,6 +354,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GrainsSameBits,
                                          Tested{"ClumpsOnAFloor", clumps_on_a_floor, clumps},
                                          Tested{"Sheared", sheared, spheres},
                                          Tested{"ComeAndGo", come_and_go, spheres},
+                                         Tested{"ComeAndGoInADrum", come_and_go_in_a_drum, spheres},
                                          Tested{"SettleFirst", settle_first, spheres}),
                          [](const auto& tested) { return tested.param.name; });
 
@@ -365,6 +376,15 @@ TEST(GrainFlow, LedgerHoldsWhatCameAndWent) {
     for (const GrainState& grain : cloud()) first += mass_of(grain);
     EXPECT_NEAR(run.totals().mass, first + rain.mass - gone[0].mass - gone[1].mass, 1e-12 * first)
         << "masses of events, rounded once each";
+}
+
+TEST(GrainFlow, TheDrumLosesAndGainsGrains) {
+    const Communicator world(MPI_COMM_WORLD);
+    GrainSimulation run = prepared(world, {"", come_and_go_in_a_drum, spheres}, {});
+    run.start();
+    for (int k = 0; k < steps; ++k) run.step();
+    EXPECT_GT(run.flow().passed()[0].count, 5U);
+    EXPECT_GT(run.flow().came()[0].count, 5U);
 }
 
 TEST(GrainFlow, SettlingEndsAtTimeZeroOrWithAnError) {
