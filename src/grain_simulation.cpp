@@ -146,7 +146,10 @@ void GrainSimulation::join_grains() {
 
 void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std::string, double>& numbers,
                              const ParticleSet& contacts, const ParticleSet* bonds) {
-    flow_.restore(numbers, grains_);
+    flow_.restore(numbers, time, grains_);
+    if (time < 0 && !setup_.settling)
+        throw AgreedError(
+            2, "the checkpoint is of grains that settle before time 0, and the scene has no [settle]");
     if (const auto looks = numbers.find("settle.quiet_looks"); looks != numbers.end())
         quiet_looks_ = static_cast<int>(looks->second);
     time_ = time;
@@ -209,16 +212,6 @@ void GrainSimulation::settle() {
                                       step_, settling.longest, imbalance, settling.imbalance,
                                       flow_.inserting(time_) ? ", and sources are not done" : ""));
     }
-}
-
-std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
-    rows_.predict(grains_, 0);
-    clumps_.predict(grains_, 0, rows_);
-    rows_halo_.begin(rows_.values());
-    rows_halo_.finish(rows_.values());
-    std::vector<dem::LoadedContact> contacts = dem::loaded_pairs(rows_, setup_.laws, pairs_);
-    at_walls_.append_loads(rows_, setup_.laws, setup_.walls, poses_at(time_), contacts);
-    return contacts;
 }
 
 void GrainSimulation::save_numbers(std::map<std::string, double>& numbers) const {
@@ -465,9 +458,11 @@ std::vector<dem::ContactRecord> GrainSimulation::records_below(std::size_t end) 
 }
 
 ParticleSet GrainSimulation::save() {
+    const std::string known_fault = fault_;  // of a state that is kept all the same
     arrange(records_of_contacts(), time_);
     outdated_ = true;
     phases_.stop();
+    comm_.all_agree(fault_ == known_fault ? 0 : 1, fault_);
     ParticleSet contacts = dem::empty_contacts(grains_.dimension(), history_fields(setup_));
     dem::save_pairs(records_below(grains_.size()), history_fields(setup_), contacts);
     return contacts;

@@ -8,6 +8,18 @@
 
 namespace talus {
 
+std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
+    rows_.predict(grains_, 0);
+    clumps_.predict(grains_, 0, rows_);
+    if (shear_) shear_->place_velocities(grains_, rows_);
+    rows_halo_.begin(rows_.values());
+    rows_halo_.finish(rows_.values());
+    if (shear_) shear_->move_copies(rows_);
+    std::vector<dem::LoadedContact> contacts = dem::loaded_pairs(rows_, setup_.laws, pairs_);
+    at_walls_.append_loads(rows_, setup_.laws, setup_.walls, poses_at(time_), contacts);
+    return contacts;
+}
+
 GrainTotals GrainSimulation::totals() const {
     enum Sum { mass, kinetic, rotational, potential, px, py, pz, lx, ly, lz, sum_count };
     std::vector<ExactSum> sums(sum_count + 6 * setup_.walls.size());

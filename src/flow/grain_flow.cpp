@@ -120,8 +120,11 @@ void GrainFlow::save(std::map<std::string, double>& numbers) const {
     }
 }
 
-void GrainFlow::restore(const std::map<std::string, double>& numbers, const ParticleSet& grains) {
+void GrainFlow::restore(const std::map<std::string, double>& numbers, double time,
+                        const ParticleSet& grains) {
     begin(grains);
+    for (std::size_t s = 0; s < came_.size(); ++s)  // what a new source was not there to insert is not due
+        came_[s].due = plan_.sources[s].rate * std::max(time - plan_.sources[s].begin, 0.0);
     if (plan_.empty() || !numbers.contains("flow.first_count")) return;
     const std::uint64_t total = first_count_;
     const auto stored = [&](const std::string& name) {
@@ -139,6 +142,7 @@ void GrainFlow::restore(const std::map<std::string, double>& numbers, const Part
     }
     for (std::size_t s = 0; s < came_.size(); ++s) {
         const std::string prefix = "source." + plan_.sources[s].name;
+        if (!numbers.contains(prefix + ".due")) continue;
         came_[s] = {count(prefix + ".count"), count(prefix + ".missed"), count(prefix + ".attempts"),
                     stored(prefix + ".mass"), stored(prefix + ".due")};
         expected += came_[s].count;
@@ -223,7 +227,8 @@ bool GrainFlow::complete(std::size_t source) const {
 
 bool GrainFlow::inserting(double time) const {
     for (std::size_t s = 0; s < came_.size(); ++s)
-        if (plan_.sources[s].begin < time && time < plan_.sources[s].end && !complete(s)) return true;
+        if (plan_.sources[s].begin < std::max(time, 0.0) && time < plan_.sources[s].end && !complete(s))
+            return true;
     return false;
 }
 
@@ -254,6 +259,7 @@ void GrainFlow::draw_due(std::size_t s, const FlowMoment& now, std::vector<Candi
             Point place = draw(came.attempts, t * most_draws);
             for (std::uint32_t d = 1; d < most_draws && !contains(source.region, place, 3); ++d)
                 place = draw(came.attempts, t * most_draws + d);
+            if (!contains(source.region, place, 3)) continue;
             for (int axis = 0; axis < 3; ++axis) {
                 const auto a = static_cast<std::size_t>(axis);
                 place[a] = now.places(axis, place[a]);

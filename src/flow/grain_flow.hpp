@@ -86,7 +86,7 @@ class GrainFlow {
     void begin(const ParticleSet& grains);
     /// Goes on with the ledger of the checkpoint that holds these grains; from one of a run without sinks and
     /// sources it begins. Throws AgreedError if grains begun with, come and gone do not add up. Collective.
-    void restore(const std::map<std::string, double>& numbers, const ParticleSet& grains);
+    void restore(const std::map<std::string, double>& numbers, double time, const ParticleSet& grains);
     /// What a checkpoint must know.
     void save(std::map<std::string, double>& numbers) const;
 

@@ -5,6 +5,7 @@
 
 #include "comm/exact_sum.hpp"
 #include "domain/grain_fields.hpp"
+#include "physics/dem/shear.hpp"
 #include "src/flow/grain_region.hpp"
 
 namespace talus {
@@ -32,8 +33,8 @@ std::vector<std::uint8_t> members(const ParticleSet& grains, const Box& box, con
     return inside;
 }
 
-void add_grains(const ParticleSet& grains, std::span<const std::uint8_t> inside, std::span<ExactSum> sums,
-                std::span<std::uint64_t> counts) {
+void add_grains(const ParticleSet& grains, const Box& box, std::span<const std::uint8_t> inside,
+                std::span<ExactSum> sums, std::span<std::uint64_t> counts) {
     const double *m = grains.data(field::mass), *r = grains.data(field::radius);
     for (std::size_t i = 0; i < grains.size(); ++i) {
         if (!inside[i]) continue;
@@ -41,6 +42,7 @@ void add_grains(const ParticleSet& grains, std::span<const std::uint8_t> inside,
         std::array<double, 3> v{};
         for (int axis = 0; axis < 3; ++axis)
             v[static_cast<std::size_t>(axis)] = grains.data(field::velocity, axis)[i];
+        v[0] -= dem::shear_flow(box, grains.data(field::position, 1)[i]);
         sums[mass].add(m[i]);
         sums[volume_of_grains].add(4.0 / 3.0 * std::numbers::pi * r[i] * r[i] * r[i]);
         for (std::size_t a = 0; a < 3; ++a) sums[momentum + a].add(m[i] * v[a]);
@@ -75,7 +77,7 @@ std::vector<RegionState> region_states(const Communicator& comm, const ParticleS
     for (std::size_t k = 0; k < regions.size(); ++k) {
         const std::vector<std::uint8_t> inside = members(grains, box, regions[k].shape);
         const std::span<ExactSum> sums = std::span(all_sums).subspan(k * sum_count, sum_count);
-        add_grains(grains, inside, sums, std::span(all_counts).subspan(k * bodies, bodies));
+        add_grains(grains, box, inside, sums, std::span(all_counts).subspan(k * bodies, bodies));
         if (regions[k].stress) add_contacts(contacts, inside, sums);
     }
     ExactSum::all_reduce(comm, all_sums);

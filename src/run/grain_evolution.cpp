@@ -174,6 +174,7 @@ void GrainEvolution::describe(RunState& state) const {
     if (const double sheared = sheared_in_a_step(setup_.simulation); sheared != 0)
         state.numbers["sheared_in_a_step"] = sheared;
     simulation_->save_numbers(state.numbers);
+    if (simulation_->clumps().exists()) state.numbers["clumps"] = 1;
 }
 
 std::vector<SnapshotField> GrainEvolution::snapshot_fields() const {

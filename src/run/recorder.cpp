@@ -177,11 +177,12 @@ void Recorder::tell_news(Evolution& evolution) {
 
 void Recorder::stop_early(Evolution& evolution, const std::string& why) {
     files_->progress->finish();
+    const std::string summary = evolution.summary();  // of the forces of the last step
     write_checkpoint_now(evolution);
     if (comm_.is_root())
         files_->log->info("stopped early: {}; go on with --restart latest (step {}, time {} s)", why,
                           evolution.step_count(), evolution.time());
-    print_summary(evolution);
+    print_summary(evolution, summary);
 }
 
 void Recorder::finish(Evolution& evolution) {
@@ -193,6 +194,7 @@ void Recorder::finish(Evolution& evolution) {
         write_analysis(evolution);
         return;
     }
+    const std::string summary = evolution.summary();  // of the forces of the last step
     write_checkpoint_now(evolution);
     if (last_snapshot_step_ != evolution.step_count()) {  // the last state, due or not
         const double interval = output_.snapshot_interval;
@@ -201,7 +203,7 @@ void Recorder::finish(Evolution& evolution) {
             1 + (interval > 0 ? static_cast<std::uint64_t>(std::max(evolution.time(), 0.0) / interval) : 0));
     }
     write_analysis(evolution);
-    print_summary(evolution);
+    print_summary(evolution, summary);
 }
 
 void Recorder::hand_over(const Evolution& evolution) {
@@ -280,7 +282,7 @@ void Recorder::write_performance(const Evolution& evolution, const PhaseTimer& t
     });
 }
 
-void Recorder::print_summary(Evolution& evolution) {
+void Recorder::print_summary(Evolution& evolution, const std::string& more) {
     files_->performance->write(evolution);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
     PhaseTimer timer;
@@ -289,7 +291,6 @@ void Recorder::print_summary(Evolution& evolution) {
     const std::string table = timer.report(comm_, seconds);
     const std::uint64_t pairs = comm_.all_sum(evolution.pairs());
     const double energy = evolution.diagnostics().total_energy;
-    const std::string more = evolution.summary();
     write_performance(evolution, timer, seconds, pairs);
     if (!comm_.is_root()) return;
     const auto steps = static_cast<double>(evolution.step_count() - first_step_);

@@ -50,7 +50,7 @@ class Recorder {
     void write_snapshot_now(Evolution& evolution, std::uint64_t index);
     void write_analysis(const Evolution& evolution);
     void write_diagnostics(Evolution& evolution);
-    void print_summary(Evolution& evolution);
+    void print_summary(Evolution& evolution, const std::string& more);
     void write_performance(const Evolution& evolution, const class PhaseTimer& timer, double seconds,
                            std::uint64_t pairs);
 

@@ -27,7 +27,11 @@ std::array<std::uint8_t, 2> read_pair(const Section& table, const std::vector<Gr
     if (names.empty() || names.size() > 2)
         table.error("grains", "allowed: the name of one body of grains, or of two");
     for (const std::size_t place : places)
-        if (bodies[place].clump) table.error("grains", "spheres of clumps are not joined by bonds");
+        if (bodies[place].clump)
+            table.error("grains", "spheres of clumps are not joined by bonds");
+        else if (bodies[place].inserted)
+            table.error("grains", fmt::format("'{}' is a source: grains are joined at the start only",
+                                              bodies[place].name));
     if (places.empty()) return {};
     const auto [low, high] = std::minmax(places.front(), places.back());
     return {static_cast<std::uint8_t>(low), static_cast<std::uint8_t>(high)};

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "src/setup/names.hpp"
+
 namespace talus {
 
 namespace {
@@ -13,13 +15,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Range positive{0, infinity, true};
 
 /// Names of one kind are columns and entries of checkpoints.
-template <class Item>
-void refuse_same_name(const Section& table, const std::vector<Item>& others, const std::string& name) {
-    const auto same = [&](const Item& other) { return other.name == name; };
-    if (std::any_of(others.begin(), others.end(), same))
-        table.error("name", fmt::format("there is another of the name '{}'", name));
-}
-
 template <class Item>
 void read_times(const Section& table, Item& item) {
     constexpr std::int64_t usual_interval = 100;

@@ -16,6 +16,7 @@
 #include "src/setup/gravity_reader.hpp"
 #include "src/setup/handed_grains.hpp"
 #include "src/setup/material_reader.hpp"
+#include "src/setup/names.hpp"
 #include "src/setup/run_reader.hpp"
 #include "src/setup/shape_reader.hpp"
 #include "src/setup/wall_reader.hpp"
@@ -115,6 +116,7 @@ std::vector<GrainBody> read_bodies(const BodyContext& context, GrainLawReader& l
     for (const Section& table : tables) {
         GrainBody body;
         body.name = table.text("name", table.path());
+        refuse_same_name(table, bodies, body.name);
         materials.push_back(laws.material(table));
         body.material = laws.materials()[materials.back()];
         body.held = table.flag("held", false);
@@ -154,10 +156,17 @@ std::vector<dem::ClumpBody> clumps_of(const std::vector<GrainBody>& bodies) {
 
 /// What is not known of clumps and bonds, under self-gravity and in sheared boxes.
 void refuse_together(const Section& root, bool clumps, bool bonds, bool self_gravity, bool sheared) {
-    for (const char* table : {"sink", "region", "settle"})
+    for (const char* table : {"sink", "source", "region", "settle"})
         if (clumps && root.has(table)) root.error(table, "does not go with clumps");
     if (bonds && root.has("sink"))
         root.error("sink", "does not go with bonds: a deleted grain would leave its own");
+    constexpr std::string_view without_bonds = "knows contacts only, and the scene has bonds";
+    if (bonds && root.has("settle")) root.error("settle", without_bonds);
+    if (bonds && root.section("output").flag("contacts", false))
+        root.section("output").error("contacts", without_bonds);
+    for (const Section& region : root.sections("region"))
+        if (bonds && region.flag("stress", true))
+            region.error("stress", fmt::format("{}; allowed: false", without_bonds));
     for (const char* table : {"sink", "source", "settle"}) {
         if (self_gravity && root.has(table)) root.error(table, "does not go with [gravity]");
         if (sheared && root.has(table)) root.error(table, "does not go with box.shear_rate");

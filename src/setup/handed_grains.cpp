@@ -51,7 +51,10 @@ ParticleSet read_grains(const Communicator& comm, const std::filesystem::path& f
     const std::int64_t of_body = table.has("of_body") ? table.integer("of_body", {}, 0, 254) : -1;
     try {
         const std::filesystem::path found = find_checkpoint(comm, file, {});
-        read_particle_set(comm, found, grains);
+        if (read_particle_set(comm, found, grains).numbers.contains("clumps"))
+            throw AgreedError(
+                exit_input_output,
+                fmt::format("{}: its grains are spheres of clumps, which are not read", found.string()));
         agree_on(comm, [&] { check_grains(found, grains); });
     } catch (const AgreedError& error) {
         table.error("file", error.what());

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "src/setup/material_reader.hpp"
+#include "src/setup/names.hpp"
 #include "src/setup/shape_reader.hpp"
 #include "src/setup/wall_mesh_reader.hpp"
 
@@ -136,6 +137,7 @@ std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& la
         const std::string kind =
             table.choice("kind", {"plane", "container", "block", "revolved", "mesh"}, "plane");
         const std::string name = table.text("name", table.path());
+        refuse_same_name(table, walls, name);
         dem::WallShape shape;
         if (kind == "container")
             shape = read_corners<dem::ContainerShape>(table);

@@ -43,6 +43,10 @@ normal = [0, 0, 2]
 end_time = 1
 )";
 
+const std::string source_text =
+    "[[source]]\nname = \"rain\"\nmaterial = \"glass\"\nradii = [0.002, 0.003]\nshape = \"domain\"\nrate = "
+    "100\n";
+
 std::string replaced(const std::string& from, const std::string& to) {
     std::string text = scene_text;
     const std::size_t at = text.find(from);
@@ -116,6 +120,29 @@ TEST(SetupGrains, RefusesWhatCannotBe) {
     expect_fault("friction = 0.5",
                  "friction = 0.5\n[[contact]]\nmaterials = [\"glass\", \"glass\"]\nrestitution = 1.2",
                  "contact[0].restitution = 1.2");
+}
+
+TEST(SetupGrains, RefusesWhatDoesNotGoTogether) {
+    const std::string bond = "[[bond]]\ngrains = [\"g\"]\nyoungs_modulus = 1e6\npoisson_ratio = 0.2\n",
+                      region = "[[region]]\nname = \"all\"\nshape = \"domain\"\n";
+    const auto expect = [](const std::string& more, const std::string& fault) {
+        std::string text = replaced("[[grains]]", "[[grains]]\nname = \"g\"");
+        text.insert(text.find("[[wall]]"), more);
+        const std::string found = fault_of(text);
+        EXPECT_NE(found.find(fault), std::string::npos) << found;
+    };
+    expect(bond, "no fault");
+    expect(bond + region, "region[0].stress");
+    expect(bond + region + "stress = false\n", "no fault");
+    expect(bond + "[settle]\nlongest = 1\n", "(knows contacts only, and the scene has bonds)");
+    expect(bond + "[output]\ncontacts = true\n", "output.contacts");
+    expect("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"\npoint = [0, 0, 1]\nnormal = [0, 0, -1]\n",
+           "there is another of the name 'floor'");
+    std::string clumps = replaced("radius = 0.001", "clump = \"one\"");
+    clumps += "[clumps.one]\nx = [0]\ny = [0]\nz = [0]\nradii = [0.001]\n" + source_text;
+    EXPECT_NE(fault_of(clumps).find("source = an array of tables (does not go with clumps)"),
+              std::string::npos)
+        << fault_of(clumps);
 }
 
 // Eight places, two spheres at each: 1 mm apart, of 1 mm radius.
@@ -192,10 +219,6 @@ TEST(ShearedScenes, WrongOnesAreRefused) {
            "holds no walls");
     expect(sheared_scene("shear_rate = \"20 m\"\n", ""), "s-1");
 }
-
-const std::string source_text =
-    "[[source]]\nname = \"rain\"\nmaterial = \"glass\"\nradii = [0.002, 0.003]\nshape = \"domain\"\nrate = "
-    "100\n";
 
 TEST(SetupGrains, SourcesAreBodiesOfTheirOwn) {
     std::string text = scene_text;

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "physics/dem/shear.hpp"
+#include "src/flow/region_statistics.hpp"
 #include "tests/support/grain_scene.hpp"
 
 namespace talus::test {
@@ -70,6 +72,33 @@ TEST(ShearedGrains, CollideAcrossTheBorderAsInTheMiddle) {
     EXPECT_TRUE(touched);
     EXPECT_GT(norm(state_of(run, 1).angular_velocity - dem::Vector3<>{0, 20, 0}), 5) << "no friction";
     EXPECT_LT(norm(state_of(run, 1).angular_velocity - state_of(run, 3).angular_velocity), 1e-6);
+}
+
+// What is asked of a state must not depend on when lists were made either: contacts across the border and the
+// stress of the whole box, to the bit.
+TEST(ShearedGrains, StressDoesNotDependOnLists) {
+    const Communicator comm(MPI_COMM_SELF);
+    std::vector<GrainState> grains;
+    for (int k = 0; k < 343; ++k) {
+        const dem::Vector3<> place{0.014 * (k % 7) + 0.005, 0.014 * (k / 7 % 7) + 0.005,
+                                   0.014 * (k / 49) + 0.005};
+        grains.push_back(
+            {place, {0.8 * std::sin(3.0 * k), 0.8 * std::cos(5.0 * k), 0.5 * std::sin(k)}, {}, 0.0065, 2500});
+    }
+    std::vector<std::array<double, 6>> stresses;
+    for (const double skin : {0.0002, 0.002}) {
+        GrainSetup setup = sheared_setup();
+        setup.skin = skin;
+        GrainSimulation run(comm, setup, grain_set(comm, grains));
+        run.start();
+        for (int k = 0; k < 150; ++k) run.step();
+        const std::vector<dem::LoadedContact> contacts = run.loaded_contacts();
+        EXPECT_GT(contacts.size(), 50U);
+        const std::vector<WatchedRegion> all{{"all", BoxShape{{0, 0, 0}, {edge, edge, edge}}, true}};
+        stresses.push_back(region_states(comm, run.grains(), run.setup().box, 1, all, contacts)[0].stress);
+    }
+    EXPECT_NE(stresses[0][3], 0);
+    EXPECT_EQ(stresses[0], stresses[1]);
 }
 
 // A grain that nothing touches comes through the upper side four times, each time slower by the images'
