@@ -318,10 +318,9 @@ Decomposition::Ledger GrainFlow::insert(ParticleSet& grains, const FlowMoment& n
         if (missed[s] == 0 || noted_[s]) continue;
         noted_[s] = true;
         notes_.push_back(fmt::format(
-            "source '{}' is full at step {}, time {:.6g} s: {} of the grains due found no place in {} tries; "
+            "source '{}' is full at {:.6g} s: {} of the grains due found no place in {} tries; "
             "from now on the column missed_{} counts them",
-            plan_.sources[s].name, now.step, now.time, missed[s], plan_.sources[s].tries,
-            plan_.sources[s].name));
+            plan_.sources[s].name, now.time, missed[s], plan_.sources[s].tries, plan_.sources[s].name));
     }
 
     Decomposition::Ledger added;

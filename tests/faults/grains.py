@@ -65,7 +65,7 @@ begin = 0.01
         straight = self.folder / "straight"
         done = talus("run", scene, "--steps", "120", "--out", straight)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        self.assertEqual(len(re.findall("note: source 'rain' is full at step 5, time .*: \\d+ of the grains due found no place "
+        self.assertEqual(len(re.findall("note: step 6: source 'rain' is full at 0\\.068.* s: \\d+ of the grains due found no place "
                                         "in 20 tries", done.stdout)), 1, done.stdout)
         last = self.rows_of(straight)[-1]
         self.assertGreater(last["missed_rain"], 0)
