@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "domain/grain_fields.hpp"
-#include "src/run/commands.hpp"
+#include "src/run/families.hpp"
 #include "src/run/grain_evolution.hpp"
+#include "src/run/options.hpp"
 
 namespace talus {
 

@@ -15,9 +15,6 @@ int run_scene(const Communicator& comm, const RunOptions& options);
 /// particle and per rank, the first time step and the estimated cost. Collective.
 int check_scene(const Communicator& comm, const RunOptions& options);
 
-/// The same for a scene of grains. Collective.
-int check_grain_scene(const Communicator& comm, const Scene& scene);
-
 /// `talus analyse`: what the scene's [analysis] table asks for, of a checkpoint in the run's output folder
 /// (the newest, or --restart); written there. Collective.
 int analyse_checkpoint(const Communicator& comm, const RunOptions& options);

@@ -11,7 +11,6 @@
 #include "io/checkpoint.hpp"
 #include "src/flow/contact_set.hpp"
 #include "src/run/flow_columns.hpp"
-#include "src/run/sph_evolution.hpp"
 
 namespace talus {
 
@@ -30,12 +29,6 @@ std::string listed(const std::vector<std::string>& walls) {
 double sheared_in_a_step(const GrainSetup& setup) { return setup.box.shear_rate * setup.time_step; }
 
 }  // namespace
-
-std::unique_ptr<Evolution> read_evolution(const Communicator& comm, const Scene& scene,
-                                          std::optional<double> until) {
-    if (is_grain_scene(scene)) return std::make_unique<GrainEvolution>(comm, scene, until);
-    return std::make_unique<SphEvolution>(comm, scene, until);
-}
 
 GrainEvolution::GrainEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until)
     : comm_(comm),

@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "io/progress.hpp"
-#include "src/run/commands.hpp"
+#include "src/run/families.hpp"
+#include "src/run/options.hpp"
 #include "src/run/scene_checks.hpp"
 #include "src/run/warnings.hpp"
-#include "src/setup/grain_scene.hpp"
 #include "src/setup/scene_setup.hpp"
 
 namespace talus {
@@ -113,9 +113,7 @@ double measured_step_seconds(Simulation& simulation) {
 
 }  // namespace
 
-int check_scene(const Communicator& comm, const RunOptions& options) {
-    const Scene scene = load_scene(comm, options);
-    if (is_grain_scene(scene)) return check_grain_scene(comm, scene);
+int check_sph_scene(const Communicator& comm, const Scene& scene) {
     const SceneSetup setup = read_scene(comm, scene);
     check_plan(scene, setup, setup.output.end_time);
     Memory memory{static_cast<double>(comm.all_max(peak_memory())), 0};

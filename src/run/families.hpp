@@ -1,0 +1,24 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "comm/communicator.hpp"
+#include "io/scene.hpp"
+#include "src/run/evolution.hpp"
+
+namespace talus {
+
+/// A family of models that scenes choose by the tables they have, and how such a scene is run and checked.
+struct Family {
+    bool (*describes)(const Scene&);  ///< whether the scene is of this family
+    std::unique_ptr<Evolution> (*read)(const Communicator&, const Scene&, std::optional<double> until);
+    int (*check)(const Communicator&, const Scene&);  ///< `talus check`: returns the exit code; collective
+};
+
+/// `talus check` of bodies of SPH. Collective.
+int check_sph_scene(const Communicator& comm, const Scene& scene);
+
+/// The same of grains. Collective.
+int check_grain_scene(const Communicator& comm, const Scene& scene);
+
+}  // namespace talus
