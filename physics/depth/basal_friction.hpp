@@ -159,8 +159,8 @@ struct HerschelBulkley : FromProfile<HerschelBulkley> {
 
 /// Perzyna's viscoplasticity in simple shear: shear rate gamma ((tau - s)/s_0)^N above the strength
 /// s = c + (sigma - p) tan(phi), where sigma and p fall linearly from the bed to the surface.
-/// P. Perzyna, Adv. Appl. Mech. 9 (1966) 243; M. Pastor et al., Int. J. Numer. Anal. Methods Geomech. 39
-/// (2015) 1369 use it in depth-integrated models. The friction is then the same share of the stress at every
+/// P. Perzyna, Adv. Appl. Mech. 9 (1966) 243; M. Pastor et al., Arch. Comput. Methods Eng. 22 (2015)
+/// 67, use it in depth-integrated models. The friction is then the same share of the stress at every
 /// height, so that the rest is the profile of a Herschel-Bulkley fluid.
 struct PerzynaViscoplastic : FromProfile<PerzynaViscoplastic> {
     double cohesion;          ///< c [Pa]
