@@ -36,8 +36,8 @@ struct Arrangement {
     bool traceless = false;  ///< missing diagonal components make the trace vanish
 };
 
-Arrangement arrangement(const Column& column, int dimension) {
-    const FieldInfo& info = *column.info;
+Arrangement arrangement(const Column& values, int dimension) {
+    const FieldInfo& info = *values.info;
     Arrangement made;
     switch (info.shape) {
         case Shape::scalar:
@@ -60,7 +60,7 @@ Arrangement arrangement(const Column& column, int dimension) {
                                                                                  : -1);
             break;
         case Shape::profile:
-            made.sources.resize(column.components.size());
+            made.sources.resize(values.components.size());
             std::iota(made.sources.begin(), made.sources.end(), 0);
             break;
     }
