@@ -61,8 +61,8 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
         }
         const double column = correction ? correction[i] * height[i] : height[i];
         depth[i] = column * tilt.cosine;
-        // Without the pull of the bed's curvature: where a fast flow leaves a bump, columns that do not press on the
-        // bed would not push each other apart either, and heap up in a point.
+        // Without the pull of the bed's curvature: where a fast flow leaves a bump, columns that do not press
+        // on the bed would not push each other apart either, and heap up in a point.
         const double along_normal = settings.gravity * tilt.cosine;
         const double lateral_gravity =
             lateral(settings, divergence ? divergence[i] : 0) * along_normal * tilt.cosine;

@@ -119,6 +119,7 @@ DepthScene read_depth_scene(const Communicator& comm, const Scene& scene) {
     const SceneTerrain terrain = read_terrain(comm, scene, root.section("terrain"), dimension);
     simulation.terrain = terrain.ground;
     simulation.friction = read_basal_friction(root.section("friction"));
+    simulation.pore_pressure = read_pore_pressure(root.section("pore_pressure"));
     simulation.settings = read_settings(root.section("depth"), dimension, simulation);
     read_releases(comm, scene, terrain, setup);
     double widest = 0;

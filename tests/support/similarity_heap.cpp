@@ -17,8 +17,8 @@ SimilarityHeap::SimilarityHeap(const Plane& plane, const Heap& heap, double time
         if (heap.dimension == 1) return {s[1], stretch, 0, 0};
         const double widen = push / (s[0] * s[2] * s[2]);
         // At first f' = f'' t, of which friction takes a share.
-        const double held = t > 0 ? friction * s[3] / (acceleration * t)
-                                  : widen * friction / (acceleration + friction);
+        const double held =
+            t > 0 ? friction * s[3] / (acceleration * t) : widen * friction / (acceleration + friction);
         return {s[1], stretch, s[3], widen - held};
     };
     State state{1, 0, 1, 0};

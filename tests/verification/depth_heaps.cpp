@@ -24,21 +24,28 @@ struct HeapErrors {
 HeapErrors slide(const Communicator& comm, int dimension, int particles) {
     std::vector<std::string> overrides = {fmt::format("release[0].particles={}", particles)};
     if (dimension == 1)
-        overrides.insert(overrides.end(),
-                         {"dimension=1", "release[0].semi_axes=[65.53216354311934]"});
+        overrides.insert(overrides.end(), {"dimension=1", "release[0].semi_axes=[65.53216354311934]"});
     const DepthResult flow = run_depth(comm, heap(comm, overrides));
     const reference::SimilarityHeap exact({35 * degree, 25 * degree, 9.81}, {4, 80, dimension}, flow.time);
     const double cosine = std::cos(35 * degree);
     const auto s = [&](std::size_t k) { return flow.x[k] / cosine; };
-    const HeapErrors errors{
-        flow.last.centre[0] / cosine / exact.centre() - 1,
-        flow.last.greatest_place[0] / cosine / exact.front() - 1,
-        dimension == 2 ? flow.last.greatest_place[1] / exact.width() - 1 : 0,
-        flow.mean_error([&](std::size_t k) { return flow.depth[k] / exact.depth(exact.centre(), 0) -
-                                                    exact.depth(s(k), flow.y[k]) / exact.depth(exact.centre(), 0); }, -1e9, 1e9),
-        flow.mean_error([&](std::size_t k) { return flow.u[k] / cosine / exact.speed() - exact.velocity(s(k)) / exact.speed(); }, -1e9, 1e9)};
+    const HeapErrors errors{flow.last.centre[0] / cosine / exact.centre() - 1,
+                            flow.last.greatest_place[0] / cosine / exact.front() - 1,
+                            dimension == 2 ? flow.last.greatest_place[1] / exact.width() - 1 : 0,
+                            flow.mean_error(
+                                [&](std::size_t k) {
+                                    return flow.depth[k] / exact.depth(exact.centre(), 0) -
+                                           exact.depth(s(k), flow.y[k]) / exact.depth(exact.centre(), 0);
+                                },
+                                -1e9, 1e9),
+                            flow.mean_error(
+                                [&](std::size_t k) {
+                                    return flow.u[k] / cosine / exact.speed() -
+                                           exact.velocity(s(k)) / exact.speed();
+                                },
+                                -1e9, 1e9)};
     fmt::print("| {} | {} | {:+.2e} | {:+.2e} | {:+.2e} | {:.2e} | {:.2e} |\n", dimension, flow.x.size(),
-                   errors.centre, errors.front, errors.width, errors.depth, errors.velocity);
+               errors.centre, errors.front, errors.width, errors.depth, errors.velocity);
     return errors;
 }
 
@@ -59,8 +66,8 @@ TEST(DepthHeap, StaysBelowTheAngleOfFriction) {
     EXPECT_EQ(still.last.stopped, 1);
     EXPECT_EQ(still.last.centre, still.first.centre);
     EXPECT_GT(still.steps, 20U);
-    const DepthResult moving = run_depth(
-        comm, heap(comm, {"terrain.dip=0.35", "friction.angle=0.34", "release[0].particles=500"}));
+    const DepthResult moving =
+        run_depth(comm, heap(comm, {"terrain.dip=0.35", "friction.angle=0.34", "release[0].particles=500"}));
     EXPECT_GT(moving.greatest_speed, 0.1);
 }
 

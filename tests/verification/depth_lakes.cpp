@@ -6,7 +6,8 @@
 
 #include "tests/support/depth_run.hpp"
 
-/// Water over rough terrain: a lake at rest stays at rest, whatever lies below it and wherever its shores run.
+/// Water over rough terrain: a lake at rest stays at rest, whatever lies below it and wherever its shores
+/// run.
 namespace talus::test {
 namespace {
 
@@ -48,8 +49,9 @@ TEST(DepthLake, AtRestStaysAtRest) {
     for (const int dimension : {1, 2}) {
         if (dimension % world.size() != world.rank()) continue;
         const DepthResult flow = run_depth(alone, lake(dimension, dimension == 1 ? 0.25 : 1));
-        fmt::print("lake in {}D: {} particles, {} steps, greatest depth {:.3f} m, greatest speed {:.1e} m/s\n",
-                   dimension, flow.x.size(), flow.steps, flow.last.greatest_depth, flow.greatest_speed);
+        fmt::print(
+            "lake in {}D: {} particles, {} steps, greatest depth {:.3f} m, greatest speed {:.1e} m/s\n",
+            dimension, flow.x.size(), flow.steps, flow.last.greatest_depth, flow.greatest_speed);
         EXPECT_LT(flow.greatest_speed, 1e-10);
     }
 }
