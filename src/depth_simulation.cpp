@@ -8,6 +8,7 @@
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
 #include "domain/depth_fields.hpp"
+#include "domain/pore_pressure_field.hpp"
 #include "src/step_support.hpp"
 
 namespace talus {
@@ -42,6 +43,7 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
     if (fitted || !level) add({&field::bed_slope});
     if (fitted) add({&field::apparent_gravity});
+    if (setup.pore_pressure) particles.add(field::pore_pressure, setup.pore_pressure->points);
 }
 
 double DepthSimulation::interaction_radius() const {
@@ -139,7 +141,9 @@ void DepthSimulation::evaluate(double time_ahead) {
     depth::predict(particles_, setup_.settings, setup_.friction, time_ahead);
     find_heights();
     phases_.enter(Phase::material);
+    const std::vector<double> loads_before = loads();
     depth::meet_bed(particles_, *setup_.terrain, setup_.settings);
+    if (setup_.pore_pressure) consolidate(loads_before, 2 * time_ahead);
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
@@ -156,6 +160,37 @@ void DepthSimulation::evaluate(double time_ahead) {
         pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
+}
+
+/// What loads the mixture of grains and water at the bed; nothing without pore pressure. The bed's curvature
+/// is left out: its short bumps would drain the flow.
+std::vector<double> DepthSimulation::loads() const {
+    std::vector<double> found;
+    if (!setup_.pore_pressure) return found;
+    const depth::Settings& settings = setup_.settings;
+    const double unit_weight = setup_.pore_pressure->loaded_share * settings.density * settings.gravity;
+    const bool fitted = settings.form == depth::Form::bed_fitted;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+        std::array<double, 2> slope{};
+        for (int a = 0; fitted && a < particles_.dimension(); ++a)
+            slope[static_cast<std::size_t>(a)] = particles_.data(field::bed_slope, a)[i];
+        found.push_back(unit_weight * depth::Tilt(slope).cosine * particles_.data(field::depth)[i]);
+    }
+    return found;
+}
+
+void DepthSimulation::consolidate(std::span<const double> loads_before, double time_step) {
+    const PorePressure& model = *setup_.pore_pressure;
+    std::vector<double*> pressure;
+    for (int k = 0; k < model.points; ++k) pressure.push_back(particles_.data(field::pore_pressure, k));
+    const std::vector<double> loads_after = loads();
+    if (step_ == 0 && time_step == 0) return depth::set_pore_pressure(model.ratio, loads_after, pressure);
+    const depth::LoadedColumns columns{std::as_const(particles_).own(field::depth), loads_before,
+                                       loads_after};
+    if (model.points == 1)
+        depth::consolidate_first_mode(model.law, columns, time_step, particles_.own(field::pore_pressure));
+    else
+        depth::consolidate_profile(model.law, columns, time_step, pressure);
 }
 
 void DepthSimulation::conclude_step() {

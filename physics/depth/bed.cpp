@@ -60,8 +60,9 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
         }
         const double column = correction ? correction[i] * height[i] : height[i];
         depth[i] = column * tilt.cosine;
-        const double along_normal =
-            fitted ? normal_gravity(settings, apparent[i], tilt.cosine) : settings.gravity;
+        // Without the pull of the bed's curvature: where a fast flow leaves a bump, columns that do not press
+        // on the bed would not push each other apart either, and heap up in a point.
+        const double along_normal = settings.gravity * tilt.cosine;
         const double lateral_gravity =
             lateral(settings, divergence ? divergence[i] : 0) * along_normal * tilt.cosine;
         wave_speed[i] = std::sqrt(lateral_gravity * column);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "domain/depth_fields.hpp"
+#include "domain/pore_pressure_field.hpp"
 #include "physics/sph/pass_support.hpp"
 
 namespace talus::depth {
@@ -48,6 +49,8 @@ void advance(ParticleSet& particles, const Settings& settings, const Law& law, d
                a = sph::components<D>(particles, field::acceleration);
     const auto moved = sph::components_to_write<D>(particles, to);
     const double* depth = particles.data(field::depth);
+    const double* pore_pressure =
+        particles.has(field::pore_pressure) ? particles.data(field::pore_pressure) : nullptr;
     const Bed<D> bed(particles, settings);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         std::array<double, D> v_i;
@@ -56,6 +59,7 @@ void advance(ParticleSet& particles, const Settings& settings, const Law& law, d
             const Column column{.depth = depth[i],
                                 .density = settings.density,
                                 .normal_stress = settings.density * bed.gravity(i) * depth[i],
+                                .pore_pressure = pore_pressure ? pore_pressure[i] : 0,
                                 .gravity = settings.gravity};
             const double before = bed.speed(i, v_i);
             const double kept = before > 0 ? law.speed_after(before, time, column) / before : 0;

@@ -8,8 +8,11 @@
 
 #include "domain/depth_fields.hpp"
 #include "src/setup/friction_reader.hpp"
+#include "src/setup/release_reader.hpp"
+#include "src/setup/results_reader.hpp"
 #include "src/setup/run_reader.hpp"
 #include "src/setup/shape_reader.hpp"
+#include "src/setup/terrain_reader.hpp"
 
 namespace talus {
 
@@ -17,21 +20,6 @@ namespace {
 
 constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
 constexpr Range not_negative{0};
-
-/// A plane: its elevation at the origin and where it falls to.
-std::shared_ptr<const Terrain> read_plane(const Section& table, int dimension) {
-    const double elevation = table.number("elevation", "m", 0.0);
-    const double dip = table.number("dip", "rad", 0.0, not_negative);
-    if (dip >= std::numbers::pi / 2) {
-        table.error("dip", fmt::format("is {:.4g} degrees; allowed: below 90", dip * 180 / std::numbers::pi));
-        return std::make_shared<Terrain>(0.0, std::array<double, 2>{});
-    }
-    const double azimuth = dimension == 2 ? table.number("dip_direction", "rad", 0.0) : 0;
-    const double steepness = std::tan(dip);
-    return std::make_shared<Terrain>(
-        elevation, std::array<double, 2>{-steepness * std::cos(azimuth),
-                                         azimuth == 0 ? 0 : -steepness * std::sin(azimuth)});
-}
 
 /// Savage and Hutter's coefficients: 2 (1 -+ sqrt(1 - cos^2 phi (1 + tan^2 delta)))/cos^2 phi - 1.
 std::optional<depth::EarthPressure> read_earth_pressure(const Section& table, double bed_friction) {
@@ -77,43 +65,12 @@ depth::Settings read_settings(const Section& table, int dimension, const DepthSe
     return settings;
 }
 
-void read_depth(const Section& table, bool may_be_parabolic, Release& release) {
-    if (table.has("depth") && table.has("level")) table.error("level", "give depth or level, not both");
-    if (table.has("level")) {
-        release.level = table.number("level", "m");
-        return;
-    }
-    release.depth = table.number("depth", "m", {}, positive);
-    release.parabolic = table.choice("profile", {"even", "parabolic"}, "even") == "parabolic";
-    if (release.parabolic && !may_be_parabolic)
-        table.error("profile", "needs a sphere or an ellipsoid; allowed: even");
-}
-
-Release read_release(const Section& table, const BodyContext& context, double first_spacing) {
-    Release release;
-    release.name = table.text("name", table.path());
-    release.shape = read_shape(table, 1, context);
-    const bool round = std::holds_alternative<SphereShape>(release.shape) ||
-                       std::holds_alternative<EllipsoidShape>(release.shape);
-    read_depth(table, round, release);
-    release.velocity = origin_default(table, "velocity", "m s-1", context.dimension);
-    if (table.has("particles") && table.has("spacing"))
-        table.error("spacing", "give particles or spacing, not both");
-    if (table.has("particles")) {
-        const auto count = static_cast<double>(table.integer("particles", {}, 1, 2000000000));
-        release.spacing = std::pow(volume(release.shape, context.dimension) / count, 1.0 / context.dimension);
-    } else {
-        release.spacing =
-            table.number("spacing", "m",
-                         first_spacing > 0 ? std::optional<double>(first_spacing) : std::nullopt, positive);
-    }
-    return release;
-}
-
-void read_releases(const Communicator& comm, const Scene& scene, DepthScene& setup) {
+void read_releases(const Communicator& comm, const Scene& scene, const SceneTerrain& terrain,
+                   DepthScene& setup) {
     const Section root = scene.root();
     const Box& box = setup.simulation.box;
     const std::vector<Section> tables = root.sections("release");
+    std::vector<const Section*> table_of;  // of each release
     if (tables.empty()) root.error("release", "a depth-integrated scene needs at least one [[release]]");
     for (const Section& table : tables) {
         const BodyContext context{.comm = comm,
@@ -125,23 +82,26 @@ void read_releases(const Communicator& comm, const Scene& scene, DepthScene& set
                                   .in_impact = false,
                                   .gravitational_constant = 0,
                                   .seed = 0};
-        setup.releases.push_back(
-            read_release(table, context, setup.releases.empty() ? 0 : setup.releases.front().spacing));
+        const double spacing = setup.releases.empty() ? 0 : setup.releases.front().spacing;
+        for (Release& release : read_release(table, context, terrain, spacing)) {
+            setup.releases.push_back(std::move(release));
+            table_of.push_back(&table);
+        }
     }
     if (scene.faulty()) return;
-    for (std::size_t k = 0; k < tables.size(); ++k) {
+    for (std::size_t k = 0; k < table_of.size(); ++k) {
+        const Section& table = *table_of[k];
         std::optional<Point> unknown;
         const std::size_t count = columns_of(setup.releases[k], *setup.simulation.terrain,
                                              setup.simulation.settings, box.dimension, unknown)
                                       .size();
         if (unknown)
-            tables[k].error("shape",
-                            fmt::format("reaches beyond the terrain, at ({:.6g}, {:.6g}) m {}", (*unknown)[0],
+            table.error("", fmt::format("reaches beyond the terrain, at ({:.6g}, {:.6g}) m {}", (*unknown)[0],
                                         (*unknown)[1],
                                         setup.simulation.terrain->cell_name((*unknown)[0], (*unknown)[1])));
         else if (count == 0)
-            tables[k].error(tables[k].has("level") ? "level" : "spacing",
-                            "has no particles: none of its lattice is wet; make it finer or higher");
+            table.error(table.has("level") ? "level" : "spacing",
+                        "has no particles: none of its lattice is wet; make it finer or higher");
     }
 }
 
@@ -156,16 +116,20 @@ DepthScene read_depth_scene(const Communicator& comm, const Scene& scene) {
     const int dimension = static_cast<int>(root.integer("dimension", 2, 1, 2));
     DepthSetup& simulation = setup.simulation;
     simulation.box = read_box(root.section("box"), dimension);
-    simulation.terrain = read_plane(root.section("terrain"), dimension);
+    const SceneTerrain terrain = read_terrain(comm, scene, root.section("terrain"), dimension);
+    simulation.terrain = terrain.ground;
     simulation.friction = read_basal_friction(root.section("friction"));
+    simulation.pore_pressure = read_pore_pressure(root.section("pore_pressure"));
     simulation.settings = read_settings(root.section("depth"), dimension, simulation);
-    read_releases(comm, scene, setup);
+    read_releases(comm, scene, terrain, setup);
     double widest = 0;
     for (const Release& release : setup.releases) widest = std::max(widest, release.spacing);
     const double most_growth = dimension == 1 ? 50 : 5;  // of the smoothing length, where columns fly apart
     simulation.settings.largest_smoothing_length = root.section("depth").number(
         "largest_smoothing_length", "m", most_growth * simulation.settings.eta * widest, not_negative);
     setup.output = read_output(root);
+    setup.results = read_results(root, terrain, dimension);
+    setup.gauges = read_gauge_places(root, *terrain.ground, dimension);
     const Section run = root.section("run");
     simulation.partition = read_partition(run);
     simulation.rebalance_interval = read_rebalance_interval(run);

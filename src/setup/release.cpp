@@ -24,11 +24,27 @@ double relative_distance2(const BodyShape& shape, const Point& place, int dimens
     return sum;
 }
 
+BoxShape bounds_of(const Release& release, int dimension) {
+    if (release.area.rings.empty()) return bounds(release.shape, dimension);
+    const std::array<double, 2> lower = release.area.lower(), upper = release.area.upper();
+    return {{lower[0], lower[1], 0}, {upper[0], upper[1], 0}};
+}
+
+double depth_in(const TerrainGrid& raster, const Point& place) {
+    const long column = std::lround((place[0] - raster.origin[0]) / raster.spacing[0]),
+               row = std::lround((place[1] - raster.origin[1]) / raster.spacing[1]);
+    if (column < 0 || row < 0 || column >= static_cast<long>(raster.columns) ||
+        row >= static_cast<long>(raster.rows))
+        return 0;
+    const double depth = raster.at(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
+    return depth > 0 ? depth : 0;  // NaN too
+}
+
 class Lattice {
   public:
     Lattice(const Release& release, const Terrain& terrain, const depth::Settings& settings, int dimension)
         : release_(release), terrain_(terrain), settings_(settings), dimension_(dimension) {
-        const BoxShape around = bounds(release.shape, dimension);
+        const BoxShape around = bounds_of(release, dimension);
         for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
             const double length = around.upper[a] - around.lower[a];
             count_[a] = std::max(1L, std::lround(length / release.spacing));
@@ -40,7 +56,10 @@ class Lattice {
 
     using Site = std::array<long, 2>;
     const Site& count() const { return count_; }
-    bool is_wet(const Point& place) const { return contains(release_.shape, place, dimension_); }
+    bool is_wet(const Point& place) const {
+        if (!release_.area.rings.empty()) return release_.area.contains(place[0], place[1]);
+        return contains(release_.shape, place, dimension_);
+    }
     Point place(const Site& site) const {
         Point place{};
         for (std::size_t a = 0; a < static_cast<std::size_t>(dimension_); ++a)
@@ -53,6 +72,7 @@ class Lattice {
             const double ground = terrain_.elevation(place[0], place[1]);
             return *release_.level > ground ? *release_.level - ground : 0;
         }
+        if (release_.depth_raster) return depth_in(*release_.depth_raster, place);
         if (!release_.parabolic) return release_.depth;
         return release_.depth * std::max(0.0, 1 - relative_distance2(release_.shape, place, dimension_));
     }

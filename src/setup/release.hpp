@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "domain/particles.hpp"
+#include "domain/polygon.hpp"
 #include "domain/terrain.hpp"
 #include "physics/depth/settings.hpp"
 #include "src/setup/shapes.hpp"
@@ -15,6 +17,9 @@ namespace talus {
 struct Release {
     std::string name;
     BodyShape shape;
+    Polygon area;  ///< in place of a shape, if it has rings
+    std::shared_ptr<const TerrainGrid>
+        depth_raster{};             ///< in place of a depth: of the nearest cell, NaN is dry
     double spacing = 0;             ///< wanted distance of particles in plan [m]
     double depth = 0;               ///< even, or in the middle of a parabolic one [m]
     bool parabolic = false;         ///< falls to zero at the edge of a ball or ellipsoid
