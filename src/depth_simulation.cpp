@@ -49,7 +49,9 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
 double DepthSimulation::interaction_radius() const {
     double largest = 0;
     for (const double s : particles_.own(field::smoothing_length)) largest = std::max(largest, s);
-    return comm_.all_max(largest) * depth::Settings::support();
+    largest = comm_.all_max(largest);
+    if (largest == 0) largest = setup_.settings.largest_smoothing_length;  // all have left the terrain
+    return largest * depth::Settings::support();
 }
 
 double DepthSimulation::work() const {
@@ -198,7 +200,9 @@ void DepthSimulation::consolidate(std::span<const double> loads_before, double t
 void DepthSimulation::conclude_step() {
     limit_ = depth::stable_time_step(particles_, setup_.settings);
     phases_.enter(Phase::wait);
+    const double before = time_step_;
     time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);
+    if (std::isinf(time_step_)) time_step_ = before;  // all have left the terrain
 }
 
 }  // namespace talus

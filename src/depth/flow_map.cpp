@@ -69,6 +69,14 @@ std::string write_results(const DepthSimulation& simulation, const FlowRecord& r
         write_raster(comm, results / fmt::format("{}.{}", name, plan.is_geotiff ? "tif" : "asc"),
                      {std::move(grid), plan.reference});
     };
+    const TerrainGrid& frame = record.frame();
+    TerrainGrid ground = frame;
+    for (std::size_t row = 0; row < frame.rows; ++row)
+        for (std::size_t column = 0; column < frame.columns; ++column)
+            ground.elevations.push_back(simulation.setup().terrain->elevation(
+                frame.origin[0] + frame.spacing[0] * static_cast<double>(column),
+                frame.origin[1] + frame.spacing[1] * static_cast<double>(row)));
+    write("ground", std::move(ground));
     write("greatest_depth", record.depths());
     TerrainGrid speeds = record.speeds();
     write("greatest_speed", speeds);
