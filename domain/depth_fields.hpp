@@ -29,8 +29,13 @@ inline constexpr Field<double> depth_correction{
 
 inline constexpr Field<double> column_height{
     "column_height", "m", scalar, work, owner, "kernel sum of the volumes around: volume for each plan area"};
-inline constexpr Field<double> grad_h_factor{
-    "grad_h_factor", "1", scalar, work, owner, "of the varying smoothing length in gradients"};
+inline constexpr Field<double> grad_h_volume{
+    "grad_h_volume",
+    "m3",
+    scalar,
+    work,
+    halo,
+    "what the varying smoothing length of a column takes off the volumes of its partners in gradients"};
 inline constexpr Field<double> pressure_factor{"pressure_factor",
                                                "m s-2",
                                                scalar,

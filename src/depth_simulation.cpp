@@ -33,7 +33,7 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     const depth::Settings& settings = setup.settings;
     add({&field::velocity, &field::volume, &field::smoothing_length, &field::depth, &field::acceleration,
          &field::predicted_velocity, &field::next_smoothing_length, &field::column_height,
-         &field::grad_h_factor, &field::wave_speed, &field::signal_speed});
+         &field::grad_h_volume, &field::wave_speed, &field::signal_speed});
     if (settings.gradient == depth::Gradient::balanced)
         add({&field::surface_level, &field::depth_correction});
     else
@@ -148,12 +148,10 @@ void DepthSimulation::evaluate(double time_ahead) {
     if (setup_.pore_pressure) consolidate(loads_before, 2 * time_ahead);
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
-    const FieldInfo* pressure = setup_.settings.gradient == depth::Gradient::balanced
-                                    ? static_cast<const FieldInfo*>(&field::surface_level)
-                                    : &field::pressure_factor;
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
                {&field::position, &field::volume, &field::smoothing_length, &field::predicted_velocity,
-                &field::depth, &field::wave_speed, pressure},
+                &field::depth, &field::wave_speed, &field::pressure_factor, &field::grad_h_volume,
+                &field::surface_level},
                [&](Cells cells) {
                    depth::pressure_pass(particles_, decomposition_.table(), cells, setup_.settings,
                                         pass_count_);

@@ -28,8 +28,7 @@ template <int D>
 void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settings) {
     const auto x = sph::components<D>(particles, field::position),
                v = sph::components<D>(particles, field::predicted_velocity);
-    const double *height = particles.data(field::column_height),
-                 *grad_h = particles.data(field::grad_h_factor);
+    const double* height = particles.data(field::column_height);
     const auto next = std::as_const(particles).own(field::next_smoothing_length);
     std::copy(next.begin(), next.end(), particles.data(field::smoothing_length));
     double *depth = particles.data(field::depth), *wave_speed = particles.data(field::wave_speed);
@@ -67,7 +66,7 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
         const double lateral_gravity =
             lateral(settings, divergence ? divergence[i] : 0) * along_normal * tilt.cosine;
         wave_speed[i] = std::sqrt(lateral_gravity * column);
-        if (factor) factor[i] = half * lateral_gravity / grad_h[i];
+        if (factor) factor[i] = half * lateral_gravity;
         if (level) level[i] = ground.elevation + depth[i];
     }
 }

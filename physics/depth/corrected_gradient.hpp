@@ -15,7 +15,7 @@ template <int D>
 struct CorrectedGradient {
     using Vector = sph::Vector<double, D>;
     using Moments = sph::Symmetric<double, D>;
-    static constexpr double least_moment = 0.2;
+    static constexpr double least_moment = 0.01;
 
     Vector gradient, lost;
 

@@ -10,9 +10,10 @@
 /// Struct. 83 (2005) 1396.
 namespace talus::depth {
 
-/// Heights of the columns, H_i = sum_j V_j W(r_ij, s_i) with s_i = eta (V_i/H_i)^(1/D): one step of Newton's
-/// method from the present smoothing length into next_smoothing_length and column_height, which stays
-/// positive, and grad_h_factor; the divergence if the set has that field. Reads position, volume
+/// Heights of the columns, H_i = sum_j V_j W(r_ij, s_i), where s_i follows from how densely they stand,
+/// sum_j W(r_ij, s_i) = (eta/s_i)^D: one step of Newton's method from the present smoothing length into
+/// next_smoothing_length and column_height, which stays positive; grad_h_volume, P. F. Hopkins, Mon. Not. R.
+/// Astron. Soc. 428 (2013) 2840, eq. 12; the divergence if the set has that field. Reads position, volume
 /// (predicted_velocity) of partners.
 void height_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
 
@@ -22,8 +23,8 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
 
 /// Acceleration by the pressure of the columns around, by settings.gradient, and by an artificial viscosity
 /// between approaching ones; signal_speed. `count` as of the passes of SPH. Reads position, volume,
-/// smoothing_length, predicted_velocity, depth, wave_speed of partners, and pressure_factor (conservative) or
-/// surface_level (balanced).
+/// smoothing_length, predicted_velocity, depth, wave_speed of partners, and pressure_factor and grad_h_volume
+/// (conservative) or surface_level (balanced).
 void pressure_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                    sph::PassCount& count);
 

@@ -32,6 +32,7 @@ class PressurePass {
         records_.copy(place_wave_speed, components<1>(particles, field::wave_speed));
         records_.copy(place_value,
                       components<1>(particles, balanced ? field::surface_level : field::pressure_factor));
+        if constexpr (!balanced) records_.copy(place_grad_h, components<1>(particles, field::grad_h_volume));
         records_.fill_copies(finish);
     }
 
@@ -52,7 +53,8 @@ class PressurePass {
     static constexpr std::size_t place_position = 0, place_velocity = D, place_volume = 2 * D,
                                  place_inverse_s = place_volume + 1, place_depth = place_volume + 2,
                                  place_wave_speed = place_volume + 3, place_value = place_volume + 4,
-                                 record_size = place_value + 1;
+                                 place_grad_h = place_value + 1,
+                                 record_size = balanced ? place_grad_h : place_grad_h + 1;
     using Values = std::array<Lanes, record_size>;
     static constexpr std::size_t moment_count = static_cast<std::size_t>(sph::symmetric_count<D>);
 
@@ -82,17 +84,21 @@ class PressurePass {
             const Lanes viscosity = -settings_.viscosity * (mean_wave - 0.5 * closing) * closing /
                                     (own[place_depth] + other[place_depth]);
             fastest = max(fastest, mean_wave - closing);
-            const Lanes volume = select(first_lanes(partners.size() - k), other[place_volume], Lanes(0.0));
-            Lanes push = 0.5 * (own_slope + other_slope) * viscosity;
+            const LaneMask real = first_lanes(partners.size() - k);
+            const Lanes volume = other[place_volume];
+            Lanes push = 0.5 * volume * (own_slope + other_slope) * viscosity;
             if constexpr (balanced) {
-                const Lanes weight = volume / other[place_depth] * own_slope;
+                const Lanes weight = select(real, volume / other[place_depth] * own_slope, Lanes(0.0));
                 const Lanes difference = weight * (other[place_value] - own[place_value]);
                 for (std::size_t d = 0; d < D; ++d) level[d].add(k, difference * r[d]);
                 add_moments(k, weight, r, moments);
             } else {
-                push += own[place_value] * own_slope + other[place_value] * other_slope;
+                push +=
+                    own[place_value] * (volume - own[place_grad_h]) * own_slope +
+                    other[place_value] * volume * (1 - other[place_grad_h] / own[place_volume]) * other_slope;
             }
-            for (std::size_t d = 0; d < D; ++d) force[d].add(k, -volume * push * r[d]);
+            push = select(real, push, Lanes(0.0));
+            for (std::size_t d = 0; d < D; ++d) force[d].add(k, -push * r[d]);
         }
         std::array<double, D> acceleration;
         for (std::size_t d = 0; d < D; ++d) acceleration[d] = force[d].total();

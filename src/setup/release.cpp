@@ -76,27 +76,46 @@ class Lattice {
         if (!release_.parabolic) return release_.depth;
         return release_.depth * std::max(0.0, 1 - relative_distance2(release_.shape, place, dimension_));
     }
+    /// Depths within the bounds are known from the first use on.
+    double depth_at(const Site& site) const {
+        if (site[0] < 0 || site[1] < 0 || site[0] >= count_[0] || site[1] >= count_[1])
+            return depth(place(site));
+        if (depths_.empty()) depths_.assign(static_cast<std::size_t>(count_[0] * count_[1]), -1);
+        double& known = depths_[static_cast<std::size_t>(site[1] * count_[0] + site[0])];
+        if (known < 0) known = depth(place(site));
+        return known;
+    }
     double volume(const Point& place, double depth) const {
         if (settings_.form == depth::Form::cartesian) return depth * area_;
         return depth * area_ / depth::Tilt(terrain_.slope(place[0], place[1])).cosine;
     }
     double smoothing_length() const { return settings_.eta * std::pow(area_, 1.0 / dimension_); }
 
-    /// The kernel sum at a site, of columns all around.
+    struct Sums {
+        double number, dilation, height;  ///< sum W, sum r dW/dr [1/m^D]; sum V W [m]
+    };
+    /// At a site, of the columns all around that are deeper than `least_depth`.
     template <int D>
-    double height(const Site& site, double smoothing_length) const {
+    Sums sums(const Site& site, double smoothing_length, double least_depth) const {
         const depth::Kernel<D> kernel;
         const double range = depth::Settings::support() * smoothing_length;
         const long x_range = static_cast<long>(range / spacing_[0]),
                    y_range = D == 2 ? static_cast<long>(range / spacing_[1]) : 0;
-        double sum = 0;
+        const double factor = depth::lattice_factor<D>(settings_);
+        Sums sums{};
         for (long y = -y_range; y <= y_range; ++y)
             for (long x = -x_range; x <= x_range; ++x) {
-                const Point other = place({site[0] + x, site[1] + y});
+                const Site other_site{site[0] + x, site[1] + y};
+                const Point other = place(other_site);
+                const double there = depth_at(other_site);
+                if (!(there > least_depth)) continue;
                 const Point r = minus(other, place(site));
-                sum += area_ * depth(other) * kernel.value(dot(r, r), 1 / smoothing_length);
+                const double r2 = dot(r, r), value = factor * kernel.value(r2, 1 / smoothing_length);
+                sums.number += value;
+                sums.dilation += factor * kernel.factor(r2, 1 / smoothing_length) * r2;
+                sums.height += area_ * there * value;
             }
-        return depth::lattice_factor<D>(settings_) * sum;
+        return sums;
     }
 
   private:
@@ -107,22 +126,29 @@ class Lattice {
     Site count_{1, 1};
     std::array<double, 2> spacing_{}, origin_{};
     double area_;
+    mutable std::vector<double> depths_;
 };
 
-/// Solves s = eta (V/H(s))^(1/D) at a site, and sets the column's smoothing length and correction by it.
+/// Solves sum W(r, s) = (eta/s)^D at a site, whose left side times s^D grows with s, and sets the column's
+/// smoothing length and correction by it: Newton's steps for the logarithm of s, kept between bounds.
 template <int D>
-void find_correction(const Lattice& lattice, const Lattice::Site& site, double eta, ReleasedColumn& column) {
-    constexpr int most_rounds = 100;
-    double s = column.smoothing_length, height = 0;
+void find_correction(const Lattice& lattice, const Lattice::Site& site, const depth::Settings& settings,
+                     double least_depth, ReleasedColumn& column) {
+    constexpr int most_rounds = 200;
+    double s = column.smoothing_length, least = 0, most = settings.largest_smoothing_length;
+    typename Lattice::Sums sums{};
     for (int round = 0; round < most_rounds; ++round) {
-        height = lattice.height<D>(site, s);
-        const double next = 0.5 * (s + eta * std::pow(column.volume / height, 1.0 / D));
-        const bool found = std::abs(next / s - 1) < 1e-15;
+        sums = lattice.sums<D>(site, s, least_depth);
+        const double over = std::log(sums.number) + D * std::log(s / settings.eta);
+        (over > 0 ? most : least) = s;
+        double next = s * std::exp(over * sums.number / sums.dilation);
+        if (!(next > least && next < most)) next = 0.5 * (least + most);
+        const bool found = std::abs(next / s - 1) < 2e-16;
         s = next;
         if (found) break;
     }
     column.smoothing_length = s;
-    column.correction = column.depth / height;
+    column.correction = column.depth / lattice.sums<D>(site, s, least_depth).height;
 }
 
 }  // namespace
@@ -145,15 +171,16 @@ std::vector<ReleasedColumn> columns_of(const Release& release, const Terrain& te
             columns.push_back({place, depth, lattice.volume(place, depth), lattice.smoothing_length(), 1});
             sites.push_back({x, y});
         }
+    const double least_depth = least_share * greatest;
     std::size_t kept = 0;
     for (std::size_t k = 0; k < columns.size(); ++k) {
-        if (!(columns[k].depth > least_share * greatest)) continue;
+        if (!(columns[k].depth > least_depth)) continue;
         columns[kept] = columns[k];
         if (settings.gradient == depth::Gradient::balanced) {
             if (dimension == 1)
-                find_correction<1>(lattice, sites[k], settings.eta, columns[kept]);
+                find_correction<1>(lattice, sites[k], settings, least_depth, columns[kept]);
             else
-                find_correction<2>(lattice, sites[k], settings.eta, columns[kept]);
+                find_correction<2>(lattice, sites[k], settings, least_depth, columns[kept]);
         }
         ++kept;
     }

@@ -61,13 +61,13 @@ TEST(DepthHeap, SlidesAsTheSimilaritySolution) {
 TEST(DepthHeap, StaysBelowTheAngleOfFriction) {
     const Communicator comm(MPI_COMM_SELF);
     const DepthResult still =
-        run_depth(comm, heap(comm, {"terrain.dip=0.35", "release[0].particles=500", "run.end_time=20"}));
+        run_depth(comm, heap(comm, {"terrain.dip=0.3", "release[0].particles=500", "run.end_time=20"}));
     EXPECT_EQ(still.greatest_speed, 0);
     EXPECT_EQ(still.last.stopped, 1);
     EXPECT_EQ(still.last.centre, still.first.centre);
     EXPECT_GT(still.steps, 20U);
     const DepthResult moving =
-        run_depth(comm, heap(comm, {"terrain.dip=0.35", "friction.angle=0.34", "release[0].particles=500"}));
+        run_depth(comm, heap(comm, {"terrain.dip=0.3", "friction.angle=0.29", "release[0].particles=500"}));
     EXPECT_GT(moving.greatest_speed, 0.1);
 }
 
