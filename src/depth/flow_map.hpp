@@ -24,7 +24,7 @@ struct Gauge {
     std::array<double, 2> place;  ///< [m]
 };
 
-/// What a gauge shows: the level of the columns around, weighed by kernel and area, where those cover at
+/// What a gauge shows: the level of the columns around, weighed by kernel and volume, where those cover at
 /// least a tenth of its surroundings; else it is dry, and its level is that of the ground.
 struct GaugeReading {
     double depth, level;  ///< [m]
