@@ -33,12 +33,9 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     const depth::Settings& settings = setup.settings;
     add({&field::velocity, &field::volume, &field::smoothing_length, &field::depth, &field::acceleration,
          &field::predicted_velocity, &field::next_smoothing_length, &field::column_height,
-         &field::grad_h_volume, &field::wave_speed, &field::signal_speed});
-    if (settings.gradient == depth::Gradient::balanced)
-        add({&field::surface_level, &field::depth_correction});
-    else
-        add({&field::pressure_factor});
-    if (settings.needs_divergence()) add({&field::divergence});
+         &field::grad_h_volume, &field::pressure_factor, &field::wave_speed, &field::signal_speed});
+    if (settings.balance) add({&field::still_acceleration});
+    if (settings.earth_pressure) add({&field::divergence});
     const bool fitted = settings.form == depth::Form::bed_fitted;
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
     if (fitted || !level) add({&field::bed_slope});
@@ -115,7 +112,7 @@ void DepthSimulation::step() {
     evaluate(dt / 2);
     phases_.enter(Phase::motion);
     depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
-    if (setup_.settings.gradient == depth::Gradient::balanced) depth::relax_corrections(particles_, dt);
+    if (setup_.settings.balance) depth::fade_balance(particles_, dt);
     time_ += dt;
     ++step_;
     conclude_step();
@@ -129,7 +126,7 @@ void DepthSimulation::find_heights() {
     const auto pass = [&](Cells cells) {
         depth::height_pass(particles_, decomposition_.table(), cells, settings);
     };
-    if (settings.needs_divergence())
+    if (settings.earth_pressure)
         overlapped(phases_, Phase::density, decomposition_.halo(), particles_,
                    {&field::position, &field::volume, &field::predicted_velocity}, pass);
     else
@@ -150,8 +147,7 @@ void DepthSimulation::evaluate(double time_ahead) {
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
                {&field::position, &field::volume, &field::smoothing_length, &field::predicted_velocity,
-                &field::depth, &field::wave_speed, &field::pressure_factor, &field::grad_h_volume,
-                &field::surface_level},
+                &field::depth, &field::wave_speed, &field::pressure_factor, &field::grad_h_volume},
                [&](Cells cells) {
                    depth::pressure_pass(particles_, decomposition_.table(), cells, setup_.settings,
                                         pass_count_);

@@ -123,7 +123,7 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
 
 template <int D>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
-    if (settings.needs_divergence())
+    if (settings.earth_pressure)
         run<D, true>(particles, table, which, settings);
     else
         run<D, false>(particles, table, which, settings);

@@ -89,9 +89,9 @@ std::vector<std::string> DepthEvolution::news() {
 
 std::vector<SnapshotField> DepthEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
-    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-             &field::velocity, &field::depth, &field::volume, &field::smoothing_length, &field::surface_level,
-             &field::pore_pressure})
+    for (const FieldInfo* info :
+         std::initializer_list<const FieldInfo*>{&field::velocity, &field::depth, &field::volume,
+                                                 &field::smoothing_length, &field::pore_pressure})
         if (simulation_->particles().has(*info)) fields.push_back({.field = info});
     return fields;
 }

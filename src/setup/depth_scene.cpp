@@ -38,15 +38,16 @@ std::optional<depth::EarthPressure> read_earth_pressure(const Section& table, do
                                 .passive = 2 * (1 + std::sqrt(root2)) / cos2 - 1};
 }
 
-depth::Settings read_settings(const Section& table, int dimension, const DepthSetup& setup) {
+bool any_level(const Section& root) {
+    const std::vector<Section> releases = root.sections("release");
+    return std::any_of(releases.begin(), releases.end(), [](const Section& one) { return one.has("level"); });
+}
+
+depth::Settings read_settings(const Section& root, int dimension, const DepthSetup& setup) {
+    const Section table = root.section("depth");
     depth::Settings settings;
     const bool fitted = table.choice("form", {"cartesian", "bed_fitted"}, "cartesian") == "bed_fitted";
     settings.form = fitted ? depth::Form::bed_fitted : depth::Form::cartesian;
-    const bool balances = !fitted && !setup.terrain->is_plane();
-    settings.gradient = table.choice("gradient", {"conservative", "balanced"},
-                                     balances ? "balanced" : "conservative") == "balanced"
-                            ? depth::Gradient::balanced
-                            : depth::Gradient::conservative;
     settings.gravity = table.number("gravity", "m s-2", 9.81, positive);
     settings.density = table.number("density", "kg m-3", 1000.0, positive);
     settings.eta = table.number("eta", "1", dimension == 1 ? 1.6 : 1.3, {1, 4});
@@ -54,14 +55,8 @@ depth::Settings read_settings(const Section& table, int dimension, const DepthSe
     settings.courant = table.number("courant", "1", 0.4, {0, 1, true});
     settings.entrainment = table.number("entrainment", "m-1", 0.0, not_negative);
     if (fitted) settings.curvature = table.flag("curvature", true);
+    if (!fitted && any_level(root)) settings.balance = table.flag("balance", true);
     settings.earth_pressure = read_earth_pressure(table, friction_coefficient(setup.friction));
-    if (settings.gradient == depth::Gradient::balanced) {
-        if (fitted)
-            table.error("gradient",
-                        "a surface that is level needs form = \"cartesian\"; allowed: conservative");
-        if (settings.earth_pressure)
-            table.error("internal_friction_angle", "needs gradient = \"conservative\"");
-    }
     return settings;
 }
 
@@ -91,17 +86,67 @@ void read_releases(const Communicator& comm, const Scene& scene, const SceneTerr
     if (scene.faulty()) return;
     for (std::size_t k = 0; k < table_of.size(); ++k) {
         const Section& table = *table_of[k];
-        std::optional<Point> unknown;
-        const std::size_t count = columns_of(setup.releases[k], *setup.simulation.terrain,
-                                             setup.simulation.settings, box.dimension, unknown)
-                                      .size();
+        const auto [released, beyond, unknown] =
+            columns_of(setup.releases[k], *setup.simulation.terrain, setup.simulation.settings, box);
         if (unknown)
             table.error("", fmt::format("reaches beyond the terrain, at ({:.6g}, {:.6g}) m {}", (*unknown)[0],
                                         (*unknown)[1],
                                         setup.simulation.terrain->cell_name((*unknown)[0], (*unknown)[1])));
-        else if (count == 0)
+        else if (released.empty())
             table.error(table.has("level") ? "level" : "spacing",
                         "has no particles: none of its lattice is wet; make it finer or higher");
+    }
+}
+
+/// Appends this rank's share of some columns.
+void append_share(const Communicator& comm, const std::vector<ReleasedColumn>& columns, const Point& velocity,
+                  std::uint64_t first_id, ParticleSet& particles) {
+    const auto ranks = static_cast<std::uint64_t>(comm.size()),
+               rank = static_cast<std::uint64_t>(comm.rank());
+    const std::uint64_t count = columns.size(), begin = count * rank / ranks,
+                        end = count * (rank + 1) / ranks;
+    const std::size_t place = particles.size();
+    particles.resize(place + end - begin);
+    for (std::uint64_t k = begin; k < end; ++k) {
+        const std::size_t i = place + k - begin;
+        const ReleasedColumn& column = columns[k];
+        particles.data(field::id)[i] = first_id + k;
+        for (int a = 0; a < particles.dimension(); ++a) {
+            particles.data(field::position, a)[i] = column.place[static_cast<std::size_t>(a)];
+            particles.data(field::velocity, a)[i] = velocity[static_cast<std::size_t>(a)];
+        }
+        particles.data(field::volume)[i] = column.volume;
+        particles.data(field::depth)[i] = column.depth;
+        particles.data(field::smoothing_length)[i] = column.smoothing_length;
+    }
+}
+
+/// Appends the columns of a lake with the acceleration that they would have at rest, if the lake went on
+/// where its region ends. Collective.
+void append_lake(const Communicator& comm, const DepthSetup& setup, const Release& release,
+                 const ReleasedColumns& columns, std::uint64_t first_id, ParticleSet& particles) {
+    DepthSetup still = setup;
+    still.settings.balance = false;
+    still.pore_pressure.reset();
+    ParticleSet all = empty_columns(still);
+    const std::uint64_t end_id = first_id + columns.released.size();
+    append_share(comm, columns.released, {}, first_id, all);
+    append_share(comm, columns.beyond, {}, end_id, all);
+    DepthSimulation lake(comm, still, std::move(all));
+    lake.start();
+    const ParticleSet& found = lake.particles();
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        if (found.data(field::id)[k] >= end_id) continue;
+        const std::size_t i = particles.size();
+        particles.resize(i + 1);
+        for (const Field<double>* copied : {&field::volume, &field::depth, &field::smoothing_length})
+            particles.data(*copied)[i] = found.data(*copied)[k];
+        particles.data(field::id)[i] = found.data(field::id)[k];
+        for (int a = 0; a < particles.dimension(); ++a) {
+            particles.data(field::position, a)[i] = found.data(field::position, a)[k];
+            particles.data(field::velocity, a)[i] = release.velocity[static_cast<std::size_t>(a)];
+            particles.data(field::still_acceleration, a)[i] = found.data(field::acceleration, a)[k];
+        }
     }
 }
 
@@ -120,7 +165,7 @@ DepthScene read_depth_scene(const Communicator& comm, const Scene& scene) {
     simulation.terrain = terrain.ground;
     simulation.friction = read_basal_friction(root.section("friction"));
     simulation.pore_pressure = read_pore_pressure(root.section("pore_pressure"));
-    simulation.settings = read_settings(root.section("depth"), dimension, simulation);
+    simulation.settings = read_settings(root, dimension, simulation);
     read_releases(comm, scene, terrain, setup);
     double widest = 0;
     for (const Release& release : setup.releases) widest = std::max(widest, release.spacing);
@@ -145,33 +190,15 @@ ParticleSet empty_columns(const DepthSetup& setup) {
 
 ParticleSet make_columns(const Communicator& comm, const DepthScene& scene) {
     ParticleSet particles = empty_columns(scene.simulation);
-    const auto ranks = static_cast<std::uint64_t>(comm.size()),
-               rank = static_cast<std::uint64_t>(comm.rank());
     std::uint64_t first_id = 0;
     for (const Release& release : scene.releases) {
-        std::optional<Point> unknown;
-        const std::vector<ReleasedColumn> columns =
-            columns_of(release, *scene.simulation.terrain, scene.simulation.settings,
-                       scene.simulation.box.dimension, unknown);
-        const std::uint64_t count = columns.size(), begin = count * rank / ranks,
-                            end = count * (rank + 1) / ranks;
-        const std::size_t place = particles.size();
-        particles.resize(place + end - begin);
-        for (std::uint64_t k = begin; k < end; ++k) {
-            const std::size_t i = place + k - begin;
-            const ReleasedColumn& column = columns[k];
-            particles.data(field::id)[i] = first_id + k;
-            for (int a = 0; a < particles.dimension(); ++a) {
-                particles.data(field::position, a)[i] = column.place[static_cast<std::size_t>(a)];
-                particles.data(field::velocity, a)[i] = release.velocity[static_cast<std::size_t>(a)];
-            }
-            particles.data(field::volume)[i] = column.volume;
-            particles.data(field::depth)[i] = column.depth;
-            particles.data(field::smoothing_length)[i] = column.smoothing_length;
-            if (particles.has(field::depth_correction))
-                particles.data(field::depth_correction)[i] = column.correction;
-        }
-        first_id += count;
+        const ReleasedColumns columns =
+            columns_of(release, *scene.simulation.terrain, scene.simulation.settings, scene.simulation.box);
+        if (scene.simulation.settings.balance && release.level)
+            append_lake(comm, scene.simulation, release, columns, first_id, particles);
+        else
+            append_share(comm, columns.released, release.velocity, first_id, particles);
+        first_id += columns.released.size();
     }
     return particles;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "domain/particles.hpp"
+#include "domain/box.hpp"
 #include "domain/polygon.hpp"
 #include "domain/terrain.hpp"
 #include "physics/depth/settings.hpp"
@@ -33,14 +33,19 @@ struct ReleasedColumn {
     double depth;             ///< as the model's form means it [m]
     double volume;            ///< [m3]
     double smoothing_length;  ///< [m]
-    double correction;  ///< depth over the kernel sum of the columns that continue the release all around
+};
+
+struct ReleasedColumns {
+    std::vector<ReleasedColumn> released;
+    std::vector<ReleasedColumn>
+        beyond;  ///< where a level goes on around the region, for a moment, if it is balanced
+    std::optional<Point> unknown;  ///< the first place where a release would be but the terrain is not known
 };
 
 /// The columns of a release, on a lattice of squares that fits its bounds, in order of y, then x. Those where
-/// it is less than a thousandth of its greatest depth are left out. Places where the terrain is not known are
-/// dry for a level, and given to `unknown` otherwise, the first one only.
-std::vector<ReleasedColumn> columns_of(const Release& release, const Terrain& terrain,
-                                       const depth::Settings& settings, int dimension,
-                                       std::optional<Point>& unknown);
+/// it is less than a thousandth of its greatest depth are left out. Where the terrain is not known, levels
+/// are dry.
+ReleasedColumns columns_of(const Release& release, const Terrain& terrain, const depth::Settings& settings,
+                           const Box& box);
 
 }  // namespace talus
