@@ -133,7 +133,8 @@ TEST_P(DepthSameBits, AfterInterruption) {
         std::map<std::string, double> numbers;
         first.save_numbers(numbers);
         ParticleSet share = empty_columns(scene.simulation);
-        const auto ranks = static_cast<std::size_t>(world.size()), rank = static_cast<std::size_t>(world.rank());
+        const auto ranks = static_cast<std::size_t>(world.size()),
+                   rank = static_cast<std::size_t>(world.rank());
         fill(share, saved, [&](std::size_t k) { return k % ranks == rank; });
         DepthSimulation second(world, setup_of(scene, {PartitionMethod::bisection, 5}), std::move(share));
         second.resume(first.time(), first.time_step(), first.step_count(), numbers);
