@@ -38,7 +38,9 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     if (settings.earth_pressure) add({&field::divergence});
     const bool fitted = settings.form == depth::Form::bed_fitted;
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
-    if (fitted || !level) add({&field::bed_slope});
+    const bool by_level = settings.gradient == depth::Gradient::level;
+    if (by_level) add({&field::surface_level});
+    if (fitted || !level || by_level) add({&field::bed_slope});
     if (fitted) add({&field::apparent_gravity});
     if (setup.pore_pressure) particles.add(field::pore_pressure, setup.pore_pressure->points);
 }
@@ -46,7 +48,9 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
 double DepthSimulation::interaction_radius() const {
     double largest = 0;
     for (const double s : particles_.own(field::smoothing_length)) largest = std::max(largest, s);
-    return comm_.all_max(largest) * depth::Settings::support();
+    largest = comm_.all_max(largest);
+    if (largest == 0) largest = setup_.settings.largest_smoothing_length;  // all have left the terrain
+    return largest * depth::Settings::support();
 }
 
 double DepthSimulation::work() const {
@@ -143,12 +147,17 @@ void DepthSimulation::evaluate(double time_ahead) {
     if (setup_.pore_pressure) consolidate(loads_before, 2 * time_ahead);
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
+    const bool by_level = setup_.settings.gradient == depth::Gradient::level;
+    // Where the level drives, the factor is zero; its place in the messages is the level's.
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
                {&field::position, &field::volume, &field::smoothing_length, &field::predicted_velocity,
-                &field::depth, &field::wave_speed, &field::pressure_factor, &field::grad_h_volume},
+                &field::depth, &field::wave_speed, &field::grad_h_volume,
+                by_level ? static_cast<const FieldInfo*>(&field::surface_level) : &field::pressure_factor},
                [&](Cells cells) {
                    depth::pressure_pass(particles_, decomposition_.table(), cells, setup_.settings,
                                         pass_count_);
+                   if (by_level)
+                       depth::level_pass(particles_, decomposition_.table(), cells, setup_.settings);
                });
     depth::slide_on_bed(particles_, setup_.settings);
     const std::span<const CellEntry> cells = decomposition_.own_cells();
@@ -192,7 +201,9 @@ void DepthSimulation::consolidate(std::span<const double> loads_before, double t
 void DepthSimulation::conclude_step() {
     limit_ = depth::stable_time_step(particles_, setup_.settings);
     phases_.enter(Phase::wait);
+    const double before = time_step_;
     time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);
+    if (std::isinf(time_step_)) time_step_ = before;  // all have left the terrain
 }
 
 }  // namespace talus

@@ -24,7 +24,7 @@ struct Gauge {
     std::array<double, 2> place;  ///< [m]
 };
 
-/// What a gauge shows: the level of the columns around, weighed by kernel and area, where those cover at
+/// What a gauge shows: the level of the columns around, weighed by kernel and volume, where those cover at
 /// least a tenth of its surroundings; else it is dry, and its level is that of the ground.
 struct GaugeReading {
     double depth, level;  ///< [m]
@@ -33,8 +33,8 @@ struct GaugeReading {
 /// Adds a simulation's columns of this rank, as they are now.
 void add_columns(FlowRecord& record, const DepthSimulation& simulation);
 
-/// Writes greatest depth, speed and pressure (density times the square of the greatest speed), time of
-/// arrival and the depth now to `folder`/results, and returns what to log. The record must be shared.
+/// Writes the ground, greatest depth, speed and pressure (density times the square of the greatest speed),
+/// time of arrival and the depth now to `folder`/results, and returns what to log. The record must be shared.
 /// Collective.
 std::string write_results(const DepthSimulation& simulation, const FlowRecord& record,
                           const ResultsPlan& plan, const std::filesystem::path& folder);
