@@ -97,25 +97,14 @@ class PressurePass {
     sph::PairRecords<record_size> records_;
 };
 
-template <int D>
-void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-         sph::PassCount& count) {
-    PressurePass<D> pass(particles, table, which, settings);
-    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
-        const std::uint64_t pairs = pass.visit(cell, runs);
-        count.pairs += pairs;
-        count.work_of_cell[k] = static_cast<double>(pairs);
-    });
-}
-
 }  // namespace
 
 void pressure_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                    sph::PassCount& count) {
     if (particles.dimension() == 1)
-        run<1>(particles, table, which, settings, count);
+        sph::visit_cells(PressurePass<1>(particles, table, which, settings), table, which, count);
     else
-        run<2>(particles, table, which, settings, count);
+        sph::visit_cells(PressurePass<2>(particles, table, which, settings), table, which, count);
 }
 
 }  // namespace talus::depth

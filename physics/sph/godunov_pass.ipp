@@ -6,12 +6,7 @@ namespace talus::sph {
 template <int D, class Options>
 void run_with(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
               PassCount& count) {
-    GodunovPass<D, Options> pass(particles, table, which, settings);
-    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
-        const std::uint64_t pairs = pass.visit(cell, runs);
-        count.pairs += pairs;
-        count.work_of_cell[k] = static_cast<double>(pairs);
-    });
+    visit_cells(GodunovPass<D, Options>(particles, table, which, settings), table, which, count);
 }
 
 template <int D>

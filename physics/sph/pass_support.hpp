@@ -6,6 +6,7 @@
 #include "domain/particles.hpp"
 #include "domain/partners.hpp"
 #include "physics/sph/kernels.hpp"
+#include "physics/sph/passes.hpp"
 #include "physics/sph/settings.hpp"
 
 namespace talus::sph {
@@ -52,6 +53,16 @@ void with_dimension(const ParticleSet& particles, F&& f) {
         default:
             return f(std::integral_constant<int, 3>{});
     }
+}
+
+/// Lets a pass visit the selected own cells, and counts its pairs.
+template <class Pass>
+void visit_cells(Pass&& pass, const CellTable& table, Cells which, PassCount& count) {
+    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
+        const std::uint64_t pairs = pass.visit(cell, runs);
+        count.pairs += pairs;
+        count.work_of_cell[k] = static_cast<double>(pairs);
+    });
 }
 
 }  // namespace talus::sph

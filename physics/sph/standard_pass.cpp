@@ -122,15 +122,6 @@ class StandardPass {
     PairRecords<record_size> records_;
 };
 
-template <class Pass>
-void run(Pass&& pass, const CellTable& table, Cells which, PassCount& count) {
-    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
-        const std::uint64_t pairs = pass.visit(cell, runs);
-        count.pairs += pairs;
-        count.work_of_cell[k] = static_cast<double>(pairs);
-    });
-}
-
 }  // namespace
 
 void standard_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
@@ -139,11 +130,11 @@ void standard_pass(ParticleSet& particles, const CellTable& table, Cells which, 
         constexpr int D = dimension;
         with_kernel<D>(settings, [&]<class Kernel>(const Kernel& kernel) {
             if (particles.has(field::predicted_stress))
-                run(StandardPass<D, Kernel, true>(particles, table, which, settings, kernel), table, which,
-                    count);
+                visit_cells(StandardPass<D, Kernel, true>(particles, table, which, settings, kernel), table,
+                            which, count);
             else
-                run(StandardPass<D, Kernel, false>(particles, table, which, settings, kernel), table, which,
-                    count);
+                visit_cells(StandardPass<D, Kernel, false>(particles, table, which, settings, kernel), table,
+                            which, count);
         });
     });
 }

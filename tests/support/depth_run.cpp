@@ -6,18 +6,13 @@
 #include "domain/depth_fields.hpp"
 #include "src/run/commands.hpp"
 #include "tests/support/by_id.hpp"
+#include "tests/support/scene_run.hpp"
 
 namespace talus::test {
 
 double DepthResult::mean_error(const std::function<double(std::size_t)>& error, double low,
                                double high) const {
-    double sum = 0, total = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        if (!(low < x[k] && x[k] < high)) continue;
-        sum += std::abs(error(k)) * volume[k];
-        total += volume[k];
-    }
-    return sum / total;
+    return test::mean_error(x, volume, error, low, high);
 }
 
 DepthScene depth_scene(const Communicator& comm, const std::filesystem::path& scene,

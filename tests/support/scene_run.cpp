@@ -37,7 +37,8 @@ GasResult gathered(const Communicator& comm, const Simulation& simulation) {
 
 }  // namespace
 
-double GasResult::mean_error(const std::function<double(std::size_t)>& error, double low, double high) const {
+double mean_error(const std::vector<double>& x, const std::vector<double>& volume,
+                  const std::function<double(std::size_t)>& error, double low, double high) {
     double sum = 0, total = 0;
     for (std::size_t k = 0; k < x.size(); ++k) {
         if (!(low < x[k] && x[k] < high)) continue;
@@ -45,6 +46,10 @@ double GasResult::mean_error(const std::function<double(std::size_t)>& error, do
         total += volume[k];
     }
     return sum / total;
+}
+
+double GasResult::mean_error(const std::function<double(std::size_t)>& error, double low, double high) const {
+    return test::mean_error(x, volume, error, low, high);
 }
 
 GasResult run_gas(const Communicator& comm, const std::filesystem::path& scene,

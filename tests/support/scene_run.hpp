@@ -10,6 +10,10 @@
 
 namespace talus::test {
 
+/// sum |error(k)| V_k / sum V_k over the particles k with low < x < high.
+double mean_error(const std::vector<double>& x, const std::vector<double>& volume,
+                  const std::function<double(std::size_t)>& error, double low, double high);
+
 /// All particles of a gas in order of id, on every rank, and what became of the energy.
 struct GasResult {
     double time;                 ///< [s]

@@ -1,0 +1,70 @@
+"""What depth-integrated scenes say when they are wrong. Usage: running.py."""
+import sys
+import unittest
+
+from running import Case, talus
+
+SCENE = """dimension = 1
+[terrain]
+dip = "30 deg"
+[depth]
+form = "bed_fitted"
+[friction]
+law = "coulomb"
+angle = "20 deg"
+[[release]]
+shape = "box"
+lower = [-4]
+upper = [0]
+depth = 1
+particles = 40
+[run]
+end_time = 1
+"""
+
+
+class Depth(Case):
+    def check(self, old, new, *patterns):
+        self.assertIn(old, SCENE)
+        done = talus("run", self.scene(SCENE.replace(old, new)), "--out", self.out, ranks=0)
+        self.assert_fails(done, 2, *patterns)
+        self.assertFalse(self.out.exists())
+
+    def test_a_negative_depth(self):
+        self.check("depth = 1", "depth = -1", r"scene\.toml:13: release\[0\]\.depth = -1 .*more than 0")
+
+    def test_depth_and_level(self):
+        self.check("depth = 1", "depth = 1\nlevel = 2", r"scene\.toml:14: release\[0\]\.level = 2 .*not both")
+
+    def test_a_friction_angle_of_a_wall(self):
+        self.check('angle = "20 deg"', 'angle = "90 deg"', r"scene\.toml:8: friction\.angle = .*allowed: below 90")
+
+    def test_an_unknown_law(self):
+        self.check('"coulomb"', '"columb"', r"scene\.toml:7: friction\.law = .*coulomb")
+
+    def test_a_key_of_another_law(self):
+        self.check('angle = "20 deg"', 'angle = "20 deg"\nturbulence = 500', r"friction\.turbulence")
+
+    def test_an_internal_angle_below_that_of_the_bed(self):
+        self.check('form = "bed_fitted"', 'form = "bed_fitted"\ninternal_friction_angle = "15 deg"',
+                   r"depth\.internal_friction_angle = .*from the bed's angle of friction, 20 degrees")
+
+    def test_three_dimensions(self):
+        self.check("dimension = 1", "dimension = 3", r"scene\.toml:1: dimension = 3")
+
+    def test_no_release(self):
+        done = talus("run", self.scene(SCENE[:SCENE.index("[[release]]")] + "[run]\nend_time = 1\n"), "--out", self.out,
+                     ranks=0)
+        self.assert_fails(done, 2, r"at least one \[\[release\]\]")
+
+    def test_a_level_below_the_ground(self):
+        self.check("depth = 1", "level = -50", r"release\[0\]\.level = -50 .*has no particles")
+
+    def test_a_flow_that_blows_up_names_a_particle(self):
+        scene = self.scene(SCENE.replace("depth = 1", "depth = 1\nvelocity = [1e200]"))
+        done = talus("run", scene, "--out", self.out)
+        self.assert_fails(done, 1, r"particle \d+")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)
