@@ -9,6 +9,7 @@ double mirror_sign(Shape shape, int component, int dimension, const std::array<b
     const auto sign = [&flip](int axis) { return flip[static_cast<std::size_t>(axis)] ? -1.0 : 1.0; };
     switch (shape) {
         case Shape::scalar:
+        case Shape::profile:
             return 1;
         case Shape::vector:
         case Shape::point:

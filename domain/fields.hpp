@@ -6,8 +6,9 @@
 namespace talus {
 
 /// How many components a field has and how they change under a reflection: a vector's component along
-/// the mirror's normal flips, a tensor's flips once per index along the normal.
-enum class Shape : std::uint8_t { scalar, vector, symmetric_tensor, tensor, point };
+/// the mirror's normal flips, a tensor's flips once per index along the normal. A profile holds any number of
+/// scalars, which a scene chooses (ParticleSet::add).
+enum class Shape : std::uint8_t { scalar, vector, symmetric_tensor, tensor, point, profile };
 
 /// state: moves with its particle, is saved in checkpoints and hashed. work: recomputed every step.
 enum class Role : std::uint8_t { state, work };
@@ -47,7 +48,7 @@ struct Field : FieldInfo {
 };
 
 /// Number of stored components in `dimension` space dimensions (1, 2, 3). Symmetric tensors are stored
-/// xx | xx yy xy | xx yy zz xy xz yz; full tensors row by row.
+/// xx | xx yy xy | xx yy zz xy xz yz; full tensors row by row. 0 for a profile.
 constexpr int component_count(Shape shape, int dimension) {
     switch (shape) {
         case Shape::scalar:
@@ -59,6 +60,8 @@ constexpr int component_count(Shape shape, int dimension) {
             return dimension * (dimension + 1) / 2;
         case Shape::tensor:
             return dimension * dimension;
+        case Shape::profile:
+            return 0;
     }
     return 0;
 }

@@ -29,11 +29,13 @@ const Column& ParticleSet::column(const FieldInfo& info) const {
     throw std::logic_error(fmt::format("particle set '{}' has no field '{}'", name_, info.name));
 }
 
-void ParticleSet::add(const FieldInfo& info) {
+void ParticleSet::add(const FieldInfo& info, int profile_size) {
     if (has(info)) return;
     Column column{&info, {}};
     const std::size_t count = info.reach == Reach::halo ? size_with_halo() : size_;
-    column.components.assign(static_cast<std::size_t>(component_count(info.shape, dimension_)),
+    const int components =
+        info.shape == Shape::profile ? profile_size : component_count(info.shape, dimension_);
+    column.components.assign(static_cast<std::size_t>(components),
                              StaggeredVector<std::byte>(count * size_of(info.type)));
     columns_.push_back(std::move(column));
 }

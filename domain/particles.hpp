@@ -30,8 +30,8 @@ class ParticleSet {
     std::size_t halo_size() const { return halo_size_; }  ///< copies
     std::size_t size_with_halo() const { return size_ + halo_size_; }
 
-    /// Makes sure the field exists; new values are zero.
-    void add(const FieldInfo& info);
+    /// Makes sure the field exists; new values are zero. `profile_size`: number of values of a profile.
+    void add(const FieldInfo& info, int profile_size = 0);
     bool has(const FieldInfo& info) const { return find(info) != nullptr; }
 
     /// Values of one component, own particles then halo. Throws std::logic_error if the field was not added.

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <utility>
 
 #include "io/durable.hpp"
@@ -35,7 +36,8 @@ struct Arrangement {
     bool traceless = false;  ///< missing diagonal components make the trace vanish
 };
 
-Arrangement arrangement(const FieldInfo& info, int dimension) {
+Arrangement arrangement(const Column& values, int dimension) {
+    const FieldInfo& info = *values.info;
     Arrangement made;
     switch (info.shape) {
         case Shape::scalar:
@@ -56,6 +58,10 @@ Arrangement arrangement(const FieldInfo& info, int dimension) {
                 for (int column = 0; column < 3; ++column)
                     made.sources.push_back(row < dimension && column < dimension ? row * dimension + column
                                                                                  : -1);
+            break;
+        case Shape::profile:
+            made.sources.resize(values.components.size());
+            std::iota(made.sources.begin(), made.sources.end(), 0);
             break;
     }
     return made;
@@ -92,7 +98,7 @@ void pack_as(const Column& column, std::span<const std::uint32_t> order, const A
 std::vector<std::byte> packed(const Column& column, ValueType as, std::span<const std::uint32_t> order,
                               int dimension) {
     std::vector<std::byte> rows;
-    const Arrangement parts = arrangement(*column.info, dimension);
+    const Arrangement parts = arrangement(column, dimension);
     switch (column.info->type) {
         case ValueType::f64:
             if (as == ValueType::f32)
@@ -123,7 +129,7 @@ DatasetPlan plan_field(const ParticleSet& set, const IdOrder& order, const Snaps
     plan.type =
         wanted.single_precision && column.info->type == ValueType::f64 ? ValueType::f32 : column.info->type;
     plan.total = order.total();
-    plan.components = arrangement(*column.info, set.dimension()).sources.size();
+    plan.components = arrangement(column, set.dimension()).sources.size();
     plan.unit = column.info->unit;
     plan.description =
         wanted.description.empty() ? std::string(column.info->description) : wanted.description;

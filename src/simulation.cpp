@@ -10,13 +10,12 @@
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
 #include "physics/sph/pass_support.hpp"
+#include "src/step_support.hpp"
 
 namespace talus {
 
 namespace {
-constexpr int cells_per_radius = 1;
 constexpr double pairs_worth_a_particle = 20;  // what costs the same as all but pairs: docs/decisions/012
-constexpr double room_to_grow = 1.3;           // of the largest smoothing length in a step
 
 bool has_strength(const Setup& setup) {
     return std::any_of(setup.materials.begin(), setup.materials.end(),
@@ -89,21 +88,9 @@ double Simulation::range_of_interaction() const {
 }
 
 void Simulation::arrange() {
-    if (!grid_ || setup_.sph.variable_smoothing_length) {
-        const double needed = interaction_radius();
-        double radius = needed;
-        if (setup_.sph.variable_smoothing_length) {  // room to grow in the step, once cells and halo are made
-            radius = CellGrid::ladder_radius(needed * room_to_grow);
-            for (int axis = 0; axis < setup_.box.dimension; ++axis)
-                if (setup_.box.boundary[static_cast<std::size_t>(axis)] != Boundary::open)
-                    radius = std::max(needed, std::min(radius, setup_.box.length(axis)));
-        }
-        if (!grid_ || radius != grid_radius_) {
-            grid_ = std::make_unique<CellGrid>(setup_.box, radius, cells_per_radius);
-            grid_radius_ = radius;
-            decomposition_.divide(particles_, *grid_);
-        }
-    }
+    const bool varies = setup_.sph.variable_smoothing_length;
+    if ((!grid_.exists() || varies) && grid_.fit(setup_.box, interaction_radius(), varies))
+        decomposition_.divide(particles_, *grid_);
     decomposition_.arrange(particles_, *grid_);
 }
 
@@ -182,22 +169,15 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     const sph::Settings& settings = setup_.sph;
     const CellTable& table = decomposition_.table();
     Halo& halo = decomposition_.halo();
-    const auto overlapped = [&](Phase phase, std::initializer_list<const FieldInfo*> fields, auto&& pass) {
-        phases_.enter(Phase::halo);
-        halo.begin(particles_, fields);
-        phases_.enter(phase);
-        pass(Cells::interior);
-        phases_.enter(Phase::halo);
-        halo.finish();
-        phases_.enter(phase);
-        pass(Cells::boundary);
+    const auto refreshed = [&](Phase phase, std::initializer_list<const FieldInfo*> fields, auto&& pass) {
+        overlapped(phases_, phase, halo, particles_, fields, pass);
     };
 
     phases_.enter(Phase::motion);
     sph::predict(particles_, shear_moduli_, setup_.sph, time_ahead);
     if (settings.density == sph::DensityMethod::summation || settings.variable_smoothing_length) {
-        overlapped(Phase::density, {&field::position, &field::mass},
-                   [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });
+        refreshed(Phase::density, {&field::position, &field::mass},
+                  [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });
         if (settings.variable_smoothing_length) {
             const double most = grid_->covered_radius() / range_of_interaction();
             double* h = particles_.data(field::smoothing_length);
@@ -208,24 +188,24 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     phases_.enter(Phase::material);
     material_response(damage_time);
     if (particles_.has(field::velocity_gradient))
-        overlapped(Phase::gradients,
-                   {&field::position, &field::mass, &field::smoothing_length, &field::body,
-                    &field::predicted_velocity, &field::predicted_density, &field::pressure,
-                    &field::sound_speed, &field::predicted_stress},
-                   [&](Cells cells) { sph::gradient_pass(particles_, table, cells, settings); });
+        refreshed(Phase::gradients,
+                  {&field::position, &field::mass, &field::smoothing_length, &field::body,
+                   &field::predicted_velocity, &field::predicted_density, &field::pressure,
+                   &field::sound_speed, &field::predicted_stress},
+                  [&](Cells cells) { sph::gradient_pass(particles_, table, cells, settings); });
     if (particles_.has(field::volume_curvature))
-        overlapped(Phase::gradients, {&field::volume_gradient},
-                   [&](Cells cells) { sph::curvature_pass(particles_, table, cells, settings); });
+        refreshed(Phase::gradients, {&field::volume_gradient},
+                  [&](Cells cells) { sph::curvature_pass(particles_, table, cells, settings); });
 
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
     if (settings.formulation == sph::Formulation::godunov)
-        overlapped(Phase::forces,
-                   {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
-                    &field::volume_curvature},
-                   [&](Cells cells) { sph::godunov_pass(particles_, table, cells, settings, pass_count_); });
+        refreshed(Phase::forces,
+                  {&field::velocity_gradient, &field::pressure_gradient, &field::volume_gradient,
+                   &field::volume_curvature},
+                  [&](Cells cells) { sph::godunov_pass(particles_, table, cells, settings, pass_count_); });
     else
-        overlapped(
+        refreshed(
             Phase::forces,
             {&field::position, &field::mass, &field::smoothing_length, &field::predicted_velocity,
              &field::predicted_density, &field::pressure, &field::sound_speed, &field::predicted_stress},
@@ -308,24 +288,8 @@ void Simulation::conclude_step() {
         const sph::StepLimit by_gravity = gravity::stable_time_step(particles_, *setup_.gravity);
         if (by_gravity.time_step < limit_.time_step) limit_ = by_gravity;
     }
-    const NotFinite found = find_not_finite(particles_);
     phases_.enter(Phase::wait);
-    std::array<double, 2> least = {found.field ? 0.0 : 1.0, limit_.time_step};
-    comm_.all_min(std::span<double>(least));
-    std::string message;
-    if (least[0] == 0) {
-        if (found.field)
-            message = fmt::format("step {}, time {} s: {} of particle {} in set '{}' is not finite", step_,
-                                  time_, found.field->name, found.id, particles_.name());
-        comm_.all_agree(1, message);
-    }
-    time_step_ = least[1];
-    if (time_ + time_step_ > time_) return;
-    if (limit_.time_step == time_step_)  // the time would stand still for ever
-        message =
-            fmt::format("step {}, time {} s: the time step has fallen to {} s, limited by {} at particle {}",
-                        step_, time_, time_step_, limit_.reason, limit_.id);
-    comm_.all_agree(1, message);
+    time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);
 }
 
 }  // namespace talus

@@ -2,7 +2,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +18,7 @@
 #include "physics/sph/passes.hpp"
 #include "physics/sph/settings.hpp"
 #include "src/phases.hpp"
+#include "src/varying_grid.hpp"
 
 namespace talus {
 
@@ -135,8 +135,7 @@ class Simulation {
     ParticleSet particles_;
     Decomposition decomposition_;
     std::optional<gravity::Gravity> gravity_;
-    std::unique_ptr<CellGrid> grid_;
-    double grid_radius_ = 0;
+    VaryingGrid grid_;
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     sph::PassCount pass_count_;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "src/run/commands.hpp"
+#include "src/run/depth_evolution.hpp"
 #include "src/run/grain_evolution.hpp"
 #include "src/run/sph_evolution.hpp"
 
@@ -20,6 +21,7 @@ bool any_scene(const Scene&) { return true; }
 
 /// In the order in which they are asked; the last describes every scene.
 constexpr std::array all_families = {
+    Family{is_depth_scene, read<DepthEvolution>, check_depth_scene},
     Family{is_grain_scene, read<GrainEvolution>, check_grain_scene},
     Family{any_scene, read<SphEvolution>, check_sph_scene},
 };

@@ -16,7 +16,11 @@ void check_plan(const Scene& scene, const SceneSetup& setup, double end_time) {
             tables[b].has("pressure") ? "pressure" : "internal_energy",
             fmt::format("a gas of {} J/kg has no sound speed; allowed: more than 0", body.internal_energy));
     }
-    const double interval = setup.output.snapshot_interval;
+    check_snapshots(scene, setup.output, end_time);
+}
+
+void check_snapshots(const Scene& scene, const OutputPlan& output, double end_time) {
+    const double interval = output.snapshot_interval;
     if (interval > 0 && end_time / interval > static_cast<double>(most_snapshots - 2))
         scene.root().section("output").error(
             "snapshots",
@@ -26,8 +30,10 @@ void check_plan(const Scene& scene, const SceneSetup& setup, double end_time) {
 }
 
 void check_box(const Scene& scene, const Simulation& simulation) {
-    const Box& box = simulation.setup().box;
-    const double radius = simulation.interaction_radius();
+    refuse_short_box(scene, simulation.setup().box, simulation.interaction_radius());
+}
+
+void refuse_short_box(const Scene& scene, const Box& box, double radius) {
     for (int axis = 0; axis < box.dimension; ++axis)
         if (box.boundary[static_cast<std::size_t>(axis)] != Boundary::open && box.length(axis) < radius)
             scene.root().section("box").error(

@@ -9,8 +9,12 @@ namespace talus {
 /// Throws SceneError (on every rank) naming the place in the scene: gases without a sound speed, and more
 /// snapshots until `end_time` [s] than their numbers have digits.
 void check_plan(const Scene& scene, const SceneSetup& setup, double end_time);
+/// The second of these alone.
+void check_snapshots(const Scene& scene, const OutputPlan& output, double end_time);
 
 /// The same for a box that is shorter, along an axis where it is closed, than particles reach. Collective.
 void check_box(const Scene& scene, const Simulation& simulation);
+/// The same of any model: `radius` is how far its particles reach [m].
+void refuse_short_box(const Scene& scene, const Box& box, double radius);
 
 }  // namespace talus

@@ -8,6 +8,7 @@
 
 #include "comm/communicator.hpp"
 #include "domain/particles.hpp"
+#include "domain/pore_pressure_field.hpp"
 #include "io/run_state.hpp"
 
 namespace talus::testing {
@@ -23,6 +24,7 @@ inline void add_fields(ParticleSet& set) {
           static_cast<const FieldInfo*>(&field::velocity_gradient),
           static_cast<const FieldInfo*>(&field::pressure)})
         set.add(*info);
+    set.add(field::pore_pressure, 5);
 }
 
 /// Any bits, those of a particle depending on its id only.

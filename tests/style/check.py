@@ -19,7 +19,7 @@ MAY_INCLUDE = {  # folder -> folders of ours it may include
     "io": {"io", "domain", "comm"},
     "src": {"src", "domain", "comm", "physics", "io"},
 }
-ONLY_IN = {"mpi.h": {"comm", "io"}, "hdf5.h": {"io"}, "hdf5_hl.h": {"io"}}
+ONLY_IN = {"mpi.h": {"comm", "io"}, "hdf5.h": {"io"}, "hdf5_hl.h": {"io"}, "gdal_priv.h": {"io"}, "ogrsf_frmts.h": {"io"}}
 LONGEST = 500  # lines
 LEFTOVERS = re.compile(r"\b(?:TO" + r"DO|FIX" + r"ME|X" + r"XX)\b")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+
+#include "domain/depth_fields.hpp"
+#include "physics/depth/kernel.hpp"
+#include "physics/depth/motion.hpp"
+#include "physics/depth/passes.hpp"
+#include "physics/sph/pass_support.hpp"
+
+namespace talus::depth {
+
+namespace {
+
+/// v . curvature . v of the surface z(x, y) [m/s2]
+template <int D>
+double centripetal(const TerrainPoint& ground, const std::array<double, D>& v) {
+    double sum = ground.curvature[0] * v[0] * v[0];
+    if constexpr (D == 2)
+        sum += ground.curvature[1] * v[1] * v[1] + 2 * ground.curvature[2] * v[0] * v[1];
+    return sum;
+}
+
+double lateral(const Settings& settings, double divergence) {
+    if (!settings.earth_pressure) return 1;
+    return divergence < 0 ? settings.earth_pressure->passive : settings.earth_pressure->active;
+}
+
+template <int D>
+void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settings) {
+    const auto x = sph::components<D>(particles, field::position),
+               v = sph::components<D>(particles, field::predicted_velocity);
+    const double *height = particles.data(field::column_height),
+                 *grad_h = particles.data(field::grad_h_factor);
+    const auto next = std::as_const(particles).own(field::next_smoothing_length);
+    std::copy(next.begin(), next.end(), particles.data(field::smoothing_length));
+    double *depth = particles.data(field::depth), *wave_speed = particles.data(field::wave_speed);
+    const auto if_any = [&](const Field<double>& one) {
+        return particles.has(one) ? particles.data(one) : nullptr;
+    };
+    std::array<double*, D> slope{};
+    if (particles.has(field::bed_slope))
+        slope = sph::components_to_write<D>(particles, field::bed_slope);
+    double* const apparent = if_any(field::apparent_gravity);
+    double* const factor = if_any(field::pressure_factor);
+    double* const level = if_any(field::surface_level);
+    const double* const correction = if_any(field::depth_correction);
+    const double* const divergence = if_any(field::divergence);
+    const bool fitted = settings.form == Form::bed_fitted;
+    const double half = 0.5 * lattice_factor<D>(settings);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const TerrainPoint ground = terrain.at(x[0][i], D == 2 ? x[D - 1][i] : 0.0);
+        for (std::size_t d = 0; d < D; ++d)
+            if (slope[d]) slope[d][i] = ground.slope[d];
+        Tilt tilt;
+        if (fitted) {
+            std::array<double, D> v_i, slope_i;
+            for (std::size_t d = 0; d < D; ++d) {
+                v_i[d] = v[d][i];
+                slope_i[d] = ground.slope[d];
+            }
+            apparent[i] = settings.gravity + centripetal<D>(ground, v_i);
+            tilt = Tilt(slope_i);
+        }
+        const double column = correction ? correction[i] * height[i] : height[i];
+        depth[i] = column * tilt.cosine;
+        const double along_normal =
+            fitted ? normal_gravity(settings, apparent[i], tilt.cosine) : settings.gravity;
+        const double lateral_gravity =
+            lateral(settings, divergence ? divergence[i] : 0) * along_normal * tilt.cosine;
+        wave_speed[i] = std::sqrt(lateral_gravity * column);
+        if (factor) factor[i] = half * lateral_gravity / grad_h[i];
+        if (level) level[i] = ground.elevation + depth[i];
+    }
+}
+
+template <int D>
+void slide(ParticleSet& particles, const Settings& settings) {
+    const auto a = sph::components_to_write<D>(particles, field::acceleration);
+    const auto slope = sph::components<D>(particles, field::bed_slope);
+    const bool fitted = settings.form == Form::bed_fitted;
+    const double* apparent = fitted ? particles.data(field::apparent_gravity) : nullptr;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        std::array<double, D> slope_i;
+        double along = fitted ? apparent[i] : settings.gravity;
+        for (std::size_t d = 0; d < D; ++d) {
+            slope_i[d] = slope[d][i];
+            if (fitted) along += a[d][i] * slope_i[d];
+        }
+        if (fitted) along *= Tilt(slope_i).cosine2;
+        for (std::size_t d = 0; d < D; ++d) a[d][i] -= along * slope_i[d];
+    }
+}
+
+}  // namespace
+
+void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& settings) {
+    if (particles.dimension() == 1)
+        meet<1>(particles, terrain, settings);
+    else
+        meet<2>(particles, terrain, settings);
+}
+
+void slide_on_bed(ParticleSet& particles, const Settings& settings) {
+    if (settings.gradient == Gradient::balanced || !particles.has(field::bed_slope)) return;
+    if (particles.dimension() == 1)
+        slide<1>(particles, settings);
+    else
+        slide<2>(particles, settings);
+}
+
+}  // namespace talus::depth

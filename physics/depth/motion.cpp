@@ -1,0 +1,145 @@
+#include "physics/depth/motion.hpp"
+
+#include <limits>
+#include <utility>
+
+#include "domain/depth_fields.hpp"
+#include "physics/sph/pass_support.hpp"
+
+namespace talus::depth {
+
+namespace {
+
+/// What a particle's speed and friction need of the bed under it.
+template <int D>
+class Bed {
+  public:
+    Bed(const ParticleSet& particles, const Settings& settings) : settings_(settings) {
+        if (settings.form == Form::cartesian) return;
+        slope_ = sph::components<D>(particles, field::bed_slope);
+        apparent_ = particles.data(field::apparent_gravity);
+    }
+    /// Along the surface.
+    double speed(std::size_t i, const std::array<double, D>& v) const {
+        double speed2 = 0, rise = 0;
+        for (std::size_t d = 0; d < D; ++d) {
+            speed2 += v[d] * v[d];
+            if (apparent_) rise += slope_[d][i] * v[d];
+        }
+        return std::sqrt(speed2 + rise * rise);
+    }
+    double gravity(std::size_t i) const {
+        if (!apparent_) return settings_.gravity;
+        std::array<double, D> slope;
+        for (std::size_t d = 0; d < D; ++d) slope[d] = slope_[d][i];
+        return normal_gravity(settings_, apparent_[i], Tilt(slope).cosine);
+    }
+
+  private:
+    const Settings& settings_;
+    std::array<const double*, D> slope_{};
+    const double* apparent_ = nullptr;
+};
+
+template <int D, class Law>
+void advance(ParticleSet& particles, const Settings& settings, const Law& law, double time,
+             const Field<double>& to) {
+    const auto v = sph::components<D>(particles, field::velocity),
+               a = sph::components<D>(particles, field::acceleration);
+    const auto moved = sph::components_to_write<D>(particles, to);
+    const double* depth = particles.data(field::depth);
+    const Bed<D> bed(particles, settings);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        std::array<double, D> v_i;
+        for (std::size_t d = 0; d < D; ++d) v_i[d] = v[d][i] + time * a[d][i];
+        if constexpr (!std::is_same_v<Law, Frictionless>) {
+            const Column column{.depth = depth[i],
+                                .density = settings.density,
+                                .normal_stress = settings.density * bed.gravity(i) * depth[i],
+                                .gravity = settings.gravity};
+            const double before = bed.speed(i, v_i);
+            const double kept = before > 0 ? law.speed_after(before, time, column) / before : 0;
+            for (double& component : v_i) component *= kept;
+        }
+        for (std::size_t d = 0; d < D; ++d) moved[d][i] = v_i[d];
+    }
+}
+
+void advance(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time,
+             const Field<double>& to) {
+    std::visit(
+        [&](const auto& law) {
+            if (particles.dimension() == 1)
+                advance<1>(particles, settings, law, time, to);
+            else
+                advance<2>(particles, settings, law, time, to);
+        },
+        friction);
+}
+
+template <int D>
+void take_up(ParticleSet& particles, const Settings& settings, double time) {
+    const auto v = sph::components_to_write<D>(particles, field::velocity);
+    double* volume = particles.data(field::volume);
+    const Bed<D> bed(particles, settings);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        std::array<double, D> v_i;
+        for (std::size_t d = 0; d < D; ++d) v_i[d] = v[d][i];
+        const double growth = std::exp(settings.entrainment * bed.speed(i, v_i) * time);
+        volume[i] *= growth;
+        for (std::size_t d = 0; d < D; ++d) v[d][i] /= growth;
+    }
+}
+
+}  // namespace
+
+void kick(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time) {
+    advance(particles, settings, friction, time, field::velocity);
+}
+
+void predict(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time) {
+    advance(particles, settings, friction, time, field::predicted_velocity);
+}
+
+void entrain(ParticleSet& particles, const Settings& settings, double time) {
+    if (particles.dimension() == 1)
+        take_up<1>(particles, settings, time);
+    else
+        take_up<2>(particles, settings, time);
+}
+
+void relax_corrections(ParticleSet& particles, double time) {
+    double* correction = particles.data(field::depth_correction);
+    for (const double divergence : std::as_const(particles).own(field::divergence)) {
+        *correction = 1 + (*correction - 1) * std::exp(-std::abs(divergence) * time);
+        ++correction;
+    }
+}
+
+sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings) {
+    const double *s = particles.data(field::smoothing_length), *signal = particles.data(field::signal_speed);
+    double by_signal = std::numeric_limits<double>::infinity(), by_acceleration = by_signal;
+    std::size_t signal_at = 0, acceleration_at = 0;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        double acceleration2 = 0;
+        for (int axis = 0; axis < particles.dimension(); ++axis) {
+            const double a = particles.data(field::acceleration, axis)[i];
+            acceleration2 += a * a;
+        }
+        if (const double step = s[i] / signal[i]; step < by_signal) {
+            by_signal = step;
+            signal_at = i;
+        }
+        if (const double step2 = s[i] / std::sqrt(acceleration2); step2 < by_acceleration) {
+            by_acceleration = step2;
+            acceleration_at = i;
+        }
+    }
+    by_acceleration = std::sqrt(by_acceleration);
+    const std::uint64_t* id = particles.data(field::id);
+    if (particles.size() == 0) return {by_signal, 0, "no particles"};
+    if (by_signal < by_acceleration) return {settings.courant * by_signal, id[signal_at], "signals"};
+    return {settings.courant * by_acceleration, id[acceleration_at], "acceleration"};
+}
+
+}  // namespace talus::depth

@@ -1,0 +1,51 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "domain/particles.hpp"
+#include "physics/depth/basal_friction.hpp"
+#include "physics/depth/settings.hpp"
+#include "physics/sph/motion.hpp"
+
+/// Leapfrog, kick-drift-kick. A particle moves in plan; where the form is fitted to the bed, it moves on the
+/// surface z(x, y) as a point under constraint does, and its speed is that along the surface.
+namespace talus::depth {
+
+/// The surface's direction at a place; level by default.
+struct Tilt {
+    double cosine2 = 1, cosine = 1;  ///< of the angle between its normal and the vertical [1]
+
+    Tilt() = default;
+    template <std::size_t D>
+    explicit Tilt(const std::array<double, D>& slope) {
+        double steepness2 = 0;
+        for (const double s : slope) steepness2 += s * s;
+        cosine2 = 1 / (1 + steepness2);
+        cosine = std::sqrt(cosine2);
+    }
+};
+
+/// Gravity along the normal of the bed, with the pull of its curvature if that counts: a flow does not press
+/// on a bed that it leaves [m/s2].
+inline double normal_gravity(const Settings& settings, double apparent, double cosine) {
+    return cosine * (settings.curvature ? std::max(apparent, 0.0) : settings.gravity);
+}
+
+/// Moves velocities `time` forward: by the acceleration, then by the bed's friction, which cannot reverse
+/// them and holds what it can hold.
+void kick(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time);
+/// The same into predicted_velocity.
+void predict(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time);
+
+/// Volume taken up from the bed on the way of a drift that was just done, and the velocity that is left: the
+/// momentum stays. O. Hungr, Can. Geotech. J. 32 (1995) 610; E_s is his growth rate.
+void entrain(ParticleSet& particles, const Settings& settings, double time);
+
+/// Relaxes depth_correction to 1 by the strain of a step: it belongs to the columns as they lay at the start.
+void relax_corrections(ParticleSet& particles, double time);
+
+/// Longest stable step over the own particles: dt = C s / (signal speed) and dt = C sqrt(s/|a|).
+sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings);
+
+}  // namespace talus::depth

@@ -1,0 +1,46 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+namespace talus::depth {
+
+/// How the equations meet a bed that is not level.
+enum class Form : std::uint8_t {
+    cartesian,  ///< vertical depths, hydrostatic along the vertical: water on gentle slopes
+    bed_fitted  ///< depths along the normal of the bed, particles move on its surface: steep slopes
+};
+
+/// How the gradient of the pressure is taken (docs/decisions/018).
+enum class Gradient : std::uint8_t {
+    conservative,  ///< from a potential energy, pair by pair: momentum on a plane is kept
+    balanced       ///< of the free surface, corrected: a lake at rest over any bed stays at rest
+};
+
+/// Coefficients of lateral earth pressure: S. B. Savage, K. Hutter, J. Fluid Mech. 199 (1989) 177.
+struct EarthPressure {
+    double active;   ///< where the flow spreads [1]
+    double passive;  ///< where it is compressed [1]
+};
+
+/// Choices and parameters of the depth-integrated model.
+struct Settings {
+    Form form = Form::cartesian;
+    Gradient gradient = Gradient::conservative;
+    double gravity = 9.81;   ///< g [m/s2]
+    double density = 1000;   ///< of the flow [kg/m3]
+    double eta = 1.3;        ///< smoothing length over (volume/height)^(1/D)
+    double largest_smoothing_length = 0;  ///< cap, where columns fly apart [m]
+    double viscosity = 1;    ///< of approaching columns, in terms of a Riemann problem's [1]
+    bool curvature = true;   ///< of the bed, in the pressure on it; form = bed_fitted only
+    std::optional<EarthPressure> earth_pressure{};  ///< none: hydrostatic
+    double entrainment = 0;  ///< E_s: growth of the volume for each metre of way [1/m]
+    double courant = 0.4;    ///< C in dt = C smoothing length / signal speed
+
+    /// Range of the kernel in smoothing lengths.
+    static constexpr double support() { return 2; }
+    bool needs_divergence() const {
+        return gradient == Gradient::balanced || earth_pressure.has_value();
+    }
+};
+
+}  // namespace talus::depth

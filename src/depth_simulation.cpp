@@ -1,0 +1,169 @@
+#include "src/depth_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "comm/exact_sum.hpp"
+#include "domain/boundary.hpp"
+#include "domain/depth_fields.hpp"
+#include "src/step_support.hpp"
+
+namespace talus {
+
+namespace {
+constexpr double pairs_worth_a_particle = 20;  // what costs the same as all but pairs
+}  // namespace
+
+DepthSimulation::DepthSimulation(const Communicator& comm, DepthSetup setup, ParticleSet particles)
+    : comm_(comm),
+      setup_(std::move(setup)),
+      particles_(std::move(particles)),
+      decomposition_(comm, setup_.partition),
+      outflow_(comm) {
+    decomposition_.expect(particles_);
+}
+
+void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup) {
+    const auto add = [&particles](std::initializer_list<const FieldInfo*> fields) {
+        for (const FieldInfo* info : fields) particles.add(*info);
+    };
+    const depth::Settings& settings = setup.settings;
+    add({&field::velocity, &field::volume, &field::smoothing_length, &field::depth, &field::acceleration,
+         &field::predicted_velocity, &field::next_smoothing_length, &field::column_height,
+         &field::grad_h_factor, &field::wave_speed, &field::signal_speed});
+    if (settings.gradient == depth::Gradient::balanced)
+        add({&field::surface_level, &field::depth_correction});
+    else
+        add({&field::pressure_factor});
+    if (settings.needs_divergence()) add({&field::divergence});
+    const bool fitted = settings.form == depth::Form::bed_fitted;
+    const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
+    if (fitted || !level) add({&field::bed_slope});
+    if (fitted) add({&field::apparent_gravity});
+}
+
+double DepthSimulation::interaction_radius() const {
+    double largest = 0;
+    for (const double s : particles_.own(field::smoothing_length)) largest = std::max(largest, s);
+    return comm_.all_max(largest) * depth::Settings::support();
+}
+
+double DepthSimulation::work() const {
+    return std::accumulate(pass_count_.work_of_cell.begin(), pass_count_.work_of_cell.end(), 0.0);
+}
+
+void DepthSimulation::arrange() {
+    if (grid_.fit(setup_.box, interaction_radius(), true)) decomposition_.divide(particles_, *grid_);
+    decomposition_.arrange(particles_, *grid_);
+}
+
+void DepthSimulation::start() {
+    constexpr int most_rounds = 100;
+    constexpr double enough = 1e-14;
+    bool found = false;
+    for (int round = 0; round < most_rounds && !found; ++round) {
+        arrange();
+        depth::predict(particles_, setup_.settings, setup_.friction, 0);
+        find_heights();
+        found = comm_.all_max(change_of_smoothing_lengths()) < enough;
+        const auto next = std::as_const(particles_).own(field::next_smoothing_length);
+        std::copy(next.begin(), next.end(), particles_.data(field::smoothing_length));
+    }
+    arrange();
+    evaluate(0);
+    conclude_step();
+}
+
+double DepthSimulation::change_of_smoothing_lengths() const {
+    const auto now = particles_.own(field::smoothing_length),
+               next = particles_.own(field::next_smoothing_length);
+    double greatest = 0;
+    for (std::size_t i = 0; i < now.size(); ++i)
+        greatest = std::max(greatest, std::abs(next[i] / now[i] - 1));
+    return greatest;
+}
+
+void DepthSimulation::resume(double time, double time_step, std::uint64_t step,
+                             const std::map<std::string, double>& numbers) {
+    time_ = time;
+    time_step_ = time_step;
+    step_ = step;
+    outflow_.restore(numbers);
+    arrange();
+}
+
+void DepthSimulation::step() {
+    const double dt = time_step_;
+    phases_.enter(Phase::motion);
+    depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
+    sph::drift(particles_, dt);
+    if (setup_.settings.entrainment > 0) depth::entrain(particles_, setup_.settings, dt);
+    apply_boundaries(particles_, setup_.box);
+    phases_.enter(Phase::decompose);
+    const Decomposition::Ledger gone = outflow_.take(particles_, *setup_.terrain, time_ + dt);
+    if (gone.count() > 0) decomposition_.expect_change({}, gone);
+    const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
+    if (work_measured_ && gone.count() == 0 && interval > 0 && step_ % interval == 0)
+        decomposition_.rebalance(pass_count_.work_of_cell);
+    arrange();
+    evaluate(dt / 2);
+    phases_.enter(Phase::motion);
+    depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
+    if (setup_.settings.gradient == depth::Gradient::balanced) depth::relax_corrections(particles_, dt);
+    time_ += dt;
+    ++step_;
+    conclude_step();
+    phases_.stop();
+}
+
+void DepthSimulation::find_heights() {
+    depth::Settings settings = setup_.settings;
+    settings.largest_smoothing_length =
+        std::min(settings.largest_smoothing_length, grid_->covered_radius() / depth::Settings::support());
+    const auto pass = [&](Cells cells) {
+        depth::height_pass(particles_, decomposition_.table(), cells, settings);
+    };
+    if (settings.needs_divergence())
+        overlapped(phases_, Phase::density, decomposition_.halo(), particles_,
+                   {&field::position, &field::volume, &field::predicted_velocity}, pass);
+    else
+        overlapped(phases_, Phase::density, decomposition_.halo(), particles_,
+                   {&field::position, &field::volume}, pass);
+}
+
+/// Everything that follows from positions and the predicted velocities.
+void DepthSimulation::evaluate(double time_ahead) {
+    phases_.enter(Phase::motion);
+    depth::predict(particles_, setup_.settings, setup_.friction, time_ahead);
+    find_heights();
+    phases_.enter(Phase::material);
+    depth::meet_bed(particles_, *setup_.terrain, setup_.settings);
+    pass_count_.pairs = 0;
+    pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
+    const FieldInfo* pressure = setup_.settings.gradient == depth::Gradient::balanced
+                                    ? static_cast<const FieldInfo*>(&field::surface_level)
+                                    : &field::pressure_factor;
+    overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
+               {&field::position, &field::volume, &field::smoothing_length, &field::predicted_velocity,
+                &field::depth, &field::wave_speed, pressure},
+               [&](Cells cells) {
+                   depth::pressure_pass(particles_, decomposition_.table(), cells, setup_.settings,
+                                        pass_count_);
+               });
+    depth::slide_on_bed(particles_, setup_.settings);
+    const std::span<const CellEntry> cells = decomposition_.own_cells();
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);
+    pairs_ += pass_count_.pairs;
+    work_measured_ = true;
+}
+
+void DepthSimulation::conclude_step() {
+    limit_ = depth::stable_time_step(particles_, setup_.settings);
+    phases_.enter(Phase::wait);
+    time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);
+}
+
+}  // namespace talus

@@ -1,0 +1,80 @@
+#include "src/setup/friction_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace talus {
+
+namespace {
+
+constexpr Range positive{0, std::numeric_limits<double>::infinity(), true};
+constexpr Range not_negative{0};
+
+/// tan(phi), given as an angle or as itself.
+double read_coefficient(const Section& table) {
+    if (table.has("angle") && table.has("coefficient"))
+        table.error("coefficient", "give angle or coefficient, not both");
+    if (table.has("angle") || !table.has("coefficient")) {
+        const double angle = table.number("angle", "rad", {}, not_negative);
+        if (angle >= std::numbers::pi / 2) {
+            table.error("angle", fmt::format("is {:.4g} degrees; allowed: below 90",
+                                             angle * 180 / std::numbers::pi));
+            return 0;
+        }
+        return std::tan(angle);
+    }
+    return table.number("coefficient", "1", {}, not_negative);
+}
+
+}  // namespace
+
+depth::BasalFriction read_basal_friction(const Section& table) {
+    const std::string law = table.choice("law",
+                                         {"none", "coulomb", "voellmy", "manning", "chezy", "newtonian",
+                                          "bingham", "herschel_bulkley", "perzyna"},
+                                         "none");
+    if (law == "coulomb") {
+        const double coefficient = read_coefficient(table);
+        return depth::Coulomb{coefficient, table.number("cohesion", "Pa", 0.0, not_negative)};
+    }
+    if (law == "voellmy") {
+        const double coefficient = read_coefficient(table);
+        return depth::Voellmy{coefficient, table.number("turbulence", "m s-2", {}, positive)};
+    }
+    if (law == "manning") return depth::Manning{table.number("roughness", "1", {}, not_negative)};
+    if (law == "chezy") return depth::Chezy{table.number("coefficient", "m(1/2) s-1", {}, positive)};
+    if (law == "newtonian") return depth::Newtonian{table.number("viscosity", "Pa s", {}, not_negative)};
+    if (law == "bingham") {
+        const double yield = table.number("yield_stress", "Pa", {}, not_negative);
+        return depth::Bingham{yield, table.number("viscosity", "Pa s", {}, positive)};
+    }
+    if (law == "herschel_bulkley") {
+        const double yield = table.number("yield_stress", "Pa", {}, not_negative),
+                     consistency = table.number("consistency", "1", {}, positive);
+        return depth::HerschelBulkley{yield, consistency, table.number("exponent", "1", {}, positive)};
+    }
+    if (law == "perzyna") {
+        const double coefficient = read_coefficient(table),
+                     cohesion = table.number("cohesion", "Pa", 0.0, not_negative),
+                     fluidity = table.number("fluidity", "s-1", {}, positive),
+                     reference = table.number("reference_stress", "Pa", {}, positive);
+        return depth::PerzynaViscoplastic{cohesion, coefficient, fluidity, reference,
+                                          table.number("exponent", "1", 1.0, positive)};
+    }
+    return depth::Frictionless{};
+}
+
+double friction_coefficient(const depth::BasalFriction& friction) {
+    return std::visit(
+        []<class Law>(const Law& law) -> double {
+            if constexpr (requires { law.friction; })
+                return law.friction;
+            else
+                return 0;
+        },
+        friction);
+}
+
+}  // namespace talus
