@@ -5,6 +5,7 @@
 
 #include "src/run/commands.hpp"
 #include "src/run/grain_evolution.hpp"
+#include "src/run/soil_evolution.hpp"
 #include "src/run/sph_evolution.hpp"
 
 namespace talus {
@@ -21,6 +22,7 @@ bool any_scene(const Scene&) { return true; }
 /// In the order in which they are asked; the last describes every scene.
 constexpr std::array all_families = {
     Family{is_grain_scene, read<GrainEvolution>, check_grain_scene},
+    Family{is_soil_scene, read<SoilEvolution>, check_soil_scene},
     Family{any_scene, read<SphEvolution>, check_sph_scene},
 };
 

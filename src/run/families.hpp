@@ -21,4 +21,7 @@ int check_sph_scene(const Communicator& comm, const Scene& scene);
 /// The same of grains. Collective.
 int check_grain_scene(const Communicator& comm, const Scene& scene);
 
+/// The same of soil. Collective.
+int check_soil_scene(const Communicator& comm, const Scene& scene);
+
 }  // namespace talus
