@@ -5,9 +5,9 @@
 
 namespace talus {
 
-/// Allocates arrays that begin at a cache line, each at another place within the pages of memory. The system gives large
-/// arrays whole pages, so that equal places of all of them would compete for the same few lines of a cache: a loop over
-/// twenty arrays then reads each line from memory again and again.
+/// Allocates arrays that begin at a cache line, each at another place within the pages of memory. The system
+/// gives large arrays whole pages, so that equal places of all of them would compete for the same few lines
+/// of a cache: a loop over twenty arrays then reads each line from memory again and again.
 template <class T>
 class StaggeredAllocator {
   public:
@@ -19,15 +19,15 @@ class StaggeredAllocator {
     T* allocate(std::size_t count) {
         const std::size_t place = next_place();
         auto* whole = static_cast<std::byte*>(
-            ::operator new(count * sizeof(T) + line + place, std::align_val_t{line}));
+            ::operator new (count * sizeof(T) + line + place, std::align_val_t{line}));
         std::byte* begin = whole + line + place;
         ::new (begin - sizeof(std::byte*)) std::byte*(whole);
         return reinterpret_cast<T*>(begin);
     }
     void deallocate(T* values, std::size_t) {
         auto* begin = reinterpret_cast<std::byte*>(values);
-        ::operator delete(*std::launder(reinterpret_cast<std::byte**>(begin - sizeof(std::byte*))),
-                          std::align_val_t{line});
+        ::operator delete (*std::launder(reinterpret_cast<std::byte**>(begin - sizeof(std::byte*))),
+                           std::align_val_t{line});
     }
     friend bool operator==(const StaggeredAllocator&, const StaggeredAllocator&) { return true; }
 

@@ -6,15 +6,16 @@ namespace talus::field {
 // Fields of depth-integrated flows, besides those of fields.hpp. A particle is a column of the flow; its
 // position, velocity and smoothing length are those in plan.
 
-inline constexpr Field<double> volume{
-    "volume", "m3", scalar, state, halo, "volume of the column, in 1D for each metre of width"};
-inline constexpr Field<double> depth{"depth",
-                                     "m",
-                                     scalar,
-                                     state,
-                                     halo,
-                                     "depth of the flow along the vertical, or along the normal of the bed if "
-                                     "the model is fitted to the bed"};
+inline constexpr Field<double> volume{"volume", "m3", scalar,
+                                      state,    halo, "volume of the column, in 1D for each metre of width"};
+inline constexpr Field<double> depth{
+    "depth",
+    "m",
+    scalar,
+    state,
+    halo,
+    "depth of the flow along the vertical, or along the normal of the bed if "
+    "the model is fitted to the bed"};
 inline constexpr Field<double> bed_slope{"bed_slope", "1", vector, state, owner, "slope of the bed"};
 inline constexpr Field<double> apparent_gravity{
     "apparent_gravity",
@@ -30,15 +31,19 @@ inline constexpr Field<double> column_height{
     "column_height", "m", scalar, work, owner, "kernel sum of the volumes around: volume for each plan area"};
 inline constexpr Field<double> grad_h_factor{
     "grad_h_factor", "1", scalar, work, owner, "of the varying smoothing length in gradients"};
-inline constexpr Field<double> pressure_factor{
-    "pressure_factor", "m s-2", scalar, work, halo, "of a column's own kernel in the pressure between columns"};
-inline constexpr Field<double> wave_speed{"wave_speed", "m s-1", scalar, work, halo,
-                                          "speed of long waves in plan"};
-inline constexpr Field<double> signal_speed{"signal_speed", "m s-1", scalar, work, owner,
-                                            "greatest speed of approach of a signal from a partner"};
-inline constexpr Field<double> surface_level{"surface_level", "m", scalar, work, halo,
-                                             "elevation of the free surface"};
-inline constexpr Field<double> divergence{"divergence", "s-1", scalar, work, owner,
-                                          "divergence of the velocity in plan"};
+inline constexpr Field<double> pressure_factor{"pressure_factor",
+                                               "m s-2",
+                                               scalar,
+                                               work,
+                                               halo,
+                                               "of a column's own kernel in the pressure between columns"};
+inline constexpr Field<double> wave_speed{"wave_speed", "m s-1", scalar,
+                                          work,         halo,    "speed of long waves in plan"};
+inline constexpr Field<double> signal_speed{
+    "signal_speed", "m s-1", scalar, work, owner, "greatest speed of approach of a signal from a partner"};
+inline constexpr Field<double> surface_level{
+    "surface_level", "m", scalar, work, halo, "elevation of the free surface"};
+inline constexpr Field<double> divergence{"divergence", "s-1", scalar,
+                                          work,         owner, "divergence of the velocity in plan"};
 
 }  // namespace talus::field

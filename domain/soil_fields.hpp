@@ -11,24 +11,33 @@ using enum Reach;
 inline constexpr Field<std::uint8_t> grid{
     "grid", "1", scalar, state, halo, "0: node, carries mass; 1: element, half a step behind"};
 inline constexpr Field<double> velocity{"velocity", "m s-1", vector, state, halo, "velocity of the skeleton"};
-inline constexpr Field<double> stress{
-    "stress", "Pa", symmetric_tensor, state, halo, "effective stress within the scene's dimensions"};
+inline constexpr Field<double> stress{"stress", "Pa", symmetric_tensor,
+                                      state,    halo, "effective stress within the scene's dimensions"};
 inline constexpr Field<double> lateral_stress{
-    "lateral_stress", "Pa", scalar, state, halo,
+    "lateral_stress",
+    "Pa",
+    scalar,
+    state,
+    halo,
     "normal effective stress along each axis beyond the scene's dimension"};
-inline constexpr Field<double> displacement{
-    "displacement", "m", vector, state, owner, "of nodes since the start"};
+inline constexpr Field<double> displacement{"displacement", "m",   vector,
+                                            state,          owner, "of nodes since the start"};
 inline constexpr Field<double> viscoplastic_strain{
     "viscoplastic_strain", "1", scalar, state, owner, "accumulated deviatoric viscoplastic strain"};
 inline constexpr Field<double> viscoplastic_work{
     "viscoplastic_work", "J m-3", scalar, state, owner, "work done on viscoplastic strain"};
 inline constexpr Field<double> preconsolidation{
     "preconsolidation", "Pa", scalar, state, owner, "size p_c of the yield surface of modified Cam-Clay"};
-inline constexpr Field<std::uint8_t> faces{
-    "faces", "1", scalar, state, owner,
-    "faces of the body that the node lies on: bits 2 axis (lower) and 2 axis + 1 (upper); 64: an edge or corner "
-    "that turns inwards"};
+inline constexpr Field<std::uint8_t> faces{"faces",
+                                           "1",
+                                           scalar,
+                                           state,
+                                           owner,
+                                           "faces of the body that the node lies on: bits 2 axis (lower) and "
+                                           "2 axis + 1 (upper); 64: an edge or corner "
+                                           "that turns inwards"};
 inline constexpr std::uint8_t turns_inwards = 64;
 inline constexpr Field<std::uint32_t> conditions{
-    "conditions", "1", scalar, state, owner, "boundary conditions of the scene that hold at the node, a bit each"};
+    "conditions", "1",   scalar,
+    state,        owner, "boundary conditions of the scene that hold at the node, a bit each"};
 }  // namespace talus::soil_field

@@ -29,14 +29,14 @@ struct DepthSetup {
     int rebalance_interval = 10;  ///< steps between looks at the imbalance
 };
 
-/// Totals over all particles, exact sums rounded once: the same bits on any number of ranks. In 1D all for each
-/// metre of width.
+/// Totals over all particles, exact sums rounded once: the same bits on any number of ranks. In 1D all for
+/// each metre of width.
 struct DepthTotals {
-    double volume = 0;                                    ///< [m3]
-    double kinetic_energy = 0;                            ///< of the speed along the bed [J]
-    double potential_energy = 0;                          ///< against elevation 0 [J]
-    std::array<double, 2> momentum{};                     ///< in plan [kg m/s]
-    std::array<double, 2> centre{};                       ///< of the volume, in plan [m]
+    double volume = 0;                                      ///< [m3]
+    double kinetic_energy = 0;                              ///< of the speed along the bed [J]
+    double potential_energy = 0;                            ///< against elevation 0 [J]
+    std::array<double, 2> momentum{};                       ///< in plan [kg m/s]
+    std::array<double, 2> centre{};                         ///< of the volume, in plan [m]
     std::array<double, 2> least_place{}, greatest_place{};  ///< corners of what the flow covers [m]
     double greatest_speed = 0, greatest_depth = 0;
     double stopped = 0;  ///< share of the volume that does not move at all [1]
@@ -57,8 +57,8 @@ class DepthSimulation {
     void resume(double time, double time_step, std::uint64_t step,
                 const std::map<std::string, double>& numbers);
 
-    /// One time step. Throws AgreedError (exit code 1) if a value is not finite, a particle was lost or meets a
-    /// hole of the terrain. Collective.
+    /// One time step. Throws AgreedError (exit code 1) if a value is not finite, a particle was lost or meets
+    /// a hole of the terrain. Collective.
     void step();
 
     double time() const { return time_; }            ///< [s]

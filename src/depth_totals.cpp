@@ -37,9 +37,12 @@ DepthTotals DepthSimulation::totals() const {
         sums[mx].add(own * x[0]);
         sums[my].add(own * x[1]);
         if (speed2 == 0) sums[stopped].add(own);
-        extremes = {std::max(extremes[0], x[0]),  std::max(extremes[1], x[1]),
-                    std::max(extremes[2], -x[0]), std::max(extremes[3], -x[1]),
-                    std::max(extremes[4], std::sqrt(speed2)), std::max(extremes[5], h)};
+        extremes = {std::max(extremes[0], x[0]),
+                    std::max(extremes[1], x[1]),
+                    std::max(extremes[2], -x[0]),
+                    std::max(extremes[3], -x[1]),
+                    std::max(extremes[4], std::sqrt(speed2)),
+                    std::max(extremes[5], h)};
     }
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(extremes));

@@ -123,14 +123,12 @@ void SoilSimulation::step() {
     phases_.enter(Phase::material);
     soil::apply_sources(particles_, stencils_, settings);
     soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
-    overlapped({&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
-               [&](Cells which) {
-                   soil::advance_elements(particles_, stencils_.to_elements, which, settings);
-               });
+    overlapped(
+        {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
+        [&](Cells which) { soil::advance_elements(particles_, stencils_.to_elements, which, settings); });
     if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
-    overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces, [&](Cells which) {
-        soil::advance_nodes(particles_, stencils_, which, settings, memory_);
-    });
+    overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces,
+               [&](Cells which) { soil::advance_nodes(particles_, stencils_, which, settings, memory_); });
     phases_.enter(Phase::motion);
     ++step_;
     time_ = static_cast<double>(step_) * time_step_;

@@ -11,7 +11,8 @@
 
 namespace talus {
 
-/// Refreshes fields of the copies while a pass visits the cells that need none, then lets it visit the others.
+/// Refreshes fields of the copies while a pass visits the cells that need none, then lets it visit the
+/// others.
 template <class Pass>
 void overlapped(Phases& phases, Phase phase, Halo& halo, ParticleSet& particles,
                 std::initializer_list<const FieldInfo*> fields, Pass&& pass) {
@@ -32,8 +33,8 @@ struct StepMoment {
 };
 
 /// The next time step that all ranks agree on, `limit` being this rank's, and that the state is finite: one
-/// reduction for both. Throws AgreedError (exit code 1) naming a particle if it is not, or if time would stand
-/// still. Collective.
+/// reduction for both. Throws AgreedError (exit code 1) naming a particle if it is not, or if time would
+/// stand still. Collective.
 double agreed_time_step(const Communicator& comm, const ParticleSet& particles, const StepMoment& now,
                         const sph::StepLimit& limit);
 

@@ -8,8 +8,8 @@ namespace talus {
 /// Cells one interaction radius wide, where that may change from step to step.
 class VaryingGrid {
   public:
-    /// Fits the grid to the radius that is needed now [m], the same on every rank; `varies`: with room to grow
-    /// in the step, once cells and halo are made. True if the grid is a new one.
+    /// Fits the grid to the radius that is needed now [m], the same on every rank; `varies`: with room to
+    /// grow in the step, once cells and halo are made. True if the grid is a new one.
     bool fit(const Box& box, double needed, bool varies);
 
     bool exists() const { return grid_ != nullptr; }

@@ -15,8 +15,7 @@ namespace {
 template <int D>
 double centripetal(const TerrainPoint& ground, const std::array<double, D>& v) {
     double sum = ground.curvature[0] * v[0] * v[0];
-    if constexpr (D == 2)
-        sum += ground.curvature[1] * v[1] * v[1] + 2 * ground.curvature[2] * v[0] * v[1];
+    if constexpr (D == 2) sum += ground.curvature[1] * v[1] * v[1] + 2 * ground.curvature[2] * v[0] * v[1];
     return sum;
 }
 
@@ -38,8 +37,7 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
         return particles.has(one) ? particles.data(one) : nullptr;
     };
     std::array<double*, D> slope{};
-    if (particles.has(field::bed_slope))
-        slope = sph::components_to_write<D>(particles, field::bed_slope);
+    if (particles.has(field::bed_slope)) slope = sph::components_to_write<D>(particles, field::bed_slope);
     double* const apparent = if_any(field::apparent_gravity);
     double* const factor = if_any(field::pressure_factor);
     double* const level = if_any(field::surface_level);

@@ -7,8 +7,8 @@
 namespace talus::depth {
 
 /// Corrects a gradient from differences, sum A (f_j - f_i) grad W, by the inverse of its moments M = sum A
-/// (x_j - x_i) grad W, so that it is exact for linear f: J. Bonet, T.-S. L. Lok, Comput. Methods Appl. Mech. Eng.
-/// 180 (1999) 97. Where partners are so few or lie so much in a row that an eigenvalue of M is below
+/// (x_j - x_i) grad W, so that it is exact for linear f: J. Bonet, T.-S. L. Lok, Comput. Methods Appl. Mech.
+/// Eng. 180 (1999) 97. Where partners are so few or lie so much in a row that an eigenvalue of M is below
 /// `least_moment`, less is made of that direction; `lost` is then the part of a linear field's gradient that
 /// is missing, and zero elsewhere.
 template <int D>

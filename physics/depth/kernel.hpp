@@ -7,8 +7,8 @@ namespace talus::depth {
 template <int D>
 using Kernel = sph::WendlandC2<D>;
 
-/// Factor that makes the kernel's sum over an even lattice of squares exact: an even layer has the depth that it
-/// was released with.
+/// Factor that makes the kernel's sum over an even lattice of squares exact: an even layer has the depth that
+/// it was released with.
 template <int D>
 double lattice_factor(const Settings& settings) {
     const Kernel<D> kernel;

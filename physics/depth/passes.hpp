@@ -11,13 +11,13 @@
 namespace talus::depth {
 
 /// Heights of the columns, H_i = sum_j V_j W(r_ij, s_i) with s_i = eta (V_i/H_i)^(1/D): one step of Newton's
-/// method from the present smoothing length into next_smoothing_length and column_height, which stays positive,
-/// and grad_h_factor; the divergence if the set has that field. Reads position, volume (predicted_velocity) of
-/// partners.
+/// method from the present smoothing length into next_smoothing_length and column_height, which stays
+/// positive, and grad_h_factor; the divergence if the set has that field. Reads position, volume
+/// (predicted_velocity) of partners.
 void height_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
 
-/// What follows from a column and the bed under it: takes over next_smoothing_length, sets depth, wave_speed, and
-/// those of bed_slope, apparent_gravity, pressure_factor and surface_level that the set has.
+/// What follows from a column and the bed under it: takes over next_smoothing_length, sets depth, wave_speed,
+/// and those of bed_slope, apparent_gravity, pressure_factor and surface_level that the set has.
 void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& settings);
 
 /// Acceleration by the pressure of the columns around, by settings.gradient, and by an artificial viscosity
@@ -27,8 +27,8 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
 void pressure_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                    sph::PassCount& count);
 
-/// Completes the acceleration by gravity on the slope, which the balanced gradient includes already, and by the
-/// metric of the bed's surface if the form is fitted to it.
+/// Completes the acceleration by gravity on the slope, which the balanced gradient includes already, and by
+/// the metric of the bed's surface if the form is fitted to it.
 void slide_on_bed(ParticleSet& particles, const Settings& settings);
 
 }  // namespace talus::depth

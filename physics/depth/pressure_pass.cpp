@@ -17,9 +17,8 @@ class PressurePass {
   public:
     PressurePass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings)
         : settings_(settings),
-          bed_slope_(particles.has(field::bed_slope)
-                         ? components<D>(particles, field::bed_slope)
-                         : std::array<const double*, D>{}),
+          bed_slope_(particles.has(field::bed_slope) ? components<D>(particles, field::bed_slope)
+                                                     : std::array<const double*, D>{}),
           acceleration_(sph::components_to_write<D>(particles, field::acceleration)),
           signal_speed_(particles.data(field::signal_speed)),
           partners_(components<D>(particles, field::position), particles.data(field::smoothing_length),

@@ -26,21 +26,19 @@ struct EarthPressure {
 struct Settings {
     Form form = Form::cartesian;
     Gradient gradient = Gradient::conservative;
-    double gravity = 9.81;   ///< g [m/s2]
-    double density = 1000;   ///< of the flow [kg/m3]
-    double eta = 1.3;        ///< smoothing length over (volume/height)^(1/D)
+    double gravity = 9.81;                ///< g [m/s2]
+    double density = 1000;                ///< of the flow [kg/m3]
+    double eta = 1.3;                     ///< smoothing length over (volume/height)^(1/D)
     double largest_smoothing_length = 0;  ///< cap, where columns fly apart [m]
-    double viscosity = 1;    ///< of approaching columns, in terms of a Riemann problem's [1]
-    bool curvature = true;   ///< of the bed, in the pressure on it; form = bed_fitted only
+    double viscosity = 1;                 ///< of approaching columns, in terms of a Riemann problem's [1]
+    bool curvature = true;                ///< of the bed, in the pressure on it; form = bed_fitted only
     std::optional<EarthPressure> earth_pressure{};  ///< none: hydrostatic
-    double entrainment = 0;  ///< E_s: growth of the volume for each metre of way [1/m]
-    double courant = 0.4;    ///< C in dt = C smoothing length / signal speed
+    double entrainment = 0;                         ///< E_s: growth of the volume for each metre of way [1/m]
+    double courant = 0.4;                           ///< C in dt = C smoothing length / signal speed
 
     /// Range of the kernel in smoothing lengths.
     static constexpr double support() { return 2; }
-    bool needs_divergence() const {
-        return gradient == Gradient::balanced || earth_pressure.has_value();
-    }
+    bool needs_divergence() const { return gradient == Gradient::balanced || earth_pressure.has_value(); }
 };
 
 }  // namespace talus::depth

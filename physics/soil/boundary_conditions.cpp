@@ -65,8 +65,8 @@ void impose_tractions_in(ParticleSet& particles, std::span<const BoundaryNode> n
             const OnFace imposed = on_face(node, face, conditions, factors);
             for (int b = 0; b < D; ++b)
                 if (!imposed.held[static_cast<std::size_t>(b)])
-                    stress[static_cast<std::size_t>(sph::symmetric_index<D>(axis_of(face), b))]
-                          [node.index] = outward(face) * imposed.traction[static_cast<std::size_t>(b)];
+                    stress[static_cast<std::size_t>(sph::symmetric_index<D>(axis_of(face), b))][node.index] =
+                        outward(face) * imposed.traction[static_cast<std::size_t>(b)];
         }
 }
 

@@ -21,8 +21,8 @@ struct BoundaryCondition {
     enum class Kind : unsigned char { free_slip, velocity, traction };
     std::string name;
     Kind kind = Kind::traction;
-    Face face = -1;                ///< -1: no face, all nodes of a region (of velocities only)
-    std::array<bool, 3> held{};    ///< components of the velocity that are imposed
+    Face face = -1;                 ///< -1: no face, all nodes of a region (of velocities only)
+    std::array<bool, 3> held{};     ///< components of the velocity that are imposed
     std::array<double, 3> value{};  ///< velocity [m/s] or traction on the face [Pa]
     TimeFactor factor;
 };
@@ -47,6 +47,8 @@ void impose_tractions(ParticleSet& particles, std::span<const BoundaryNode> node
                       std::span<const BoundaryCondition> conditions, double time);
 
 /// Tributary area of a node on one face of it, from its mass [m^(D-1)].
-inline double face_area(double mass, double density, double spacing) { return 2 * mass / (density * spacing); }
+inline double face_area(double mass, double density, double spacing) {
+    return 2 * mass / (density * spacing);
+}
 
 }  // namespace talus::soil

@@ -74,8 +74,8 @@ struct FluxSums {
         for (int a = 0; a < D; ++a)
             for (int b = 0; b < D; ++b) gradient[a][b] += weight[b] * velocity[a][j];
     }
-    void add_stress(const double* weight,
-                    const std::array<double*, sph::symmetric_count<D>>& stress, std::uint32_t j) {
+    void add_stress(const double* weight, const std::array<double*, sph::symmetric_count<D>>& stress,
+                    std::uint32_t j) {
         for (int c = 0; c < sph::symmetric_count<D>; ++c) {
             const double s = stress[c][j];
             const AxisPair axes = symmetric_axes(c, D);

@@ -205,9 +205,8 @@ class Builder {
             std::size_t place = 0;
             for (std::size_t n = 0; n < gradients.size(); ++n) {
                 while (nodes_[place] != fit_.partners[n]) ++place;
-                totals_[place] -=
-                    around_.weights[k] *
-                    (fit_.weights[n] - gradients[n].dot(fit_.middle) - gradients[n].dot(around_.arms[k]));
+                totals_[place] -= around_.weights[k] * (fit_.weights[n] - gradients[n].dot(fit_.middle) -
+                                                        gradients[n].dot(around_.arms[k]));
             }
         }
         rows.targets.push_back(i);
@@ -240,8 +239,8 @@ void append_rows(const StencilRows& from, StencilRows& to) {
 
 template <int D>
 void build(const ParticleSet& particles, const CellTable& table, bool with_unseen, Stencils& stencils) {
-    Partners<D> found(sph::components<D>(particles, field::position),
-                      particles.data(field::smoothing_length), search_range);
+    Partners<D> found(sph::components<D>(particles, field::position), particles.data(field::smoothing_length),
+                      search_range);
     Builder<D> builder(particles, stencils);
     builder.unseen_inner.clear();
     builder.unseen_faces.clear();
@@ -273,9 +272,8 @@ void build_stencils(const ParticleSet& particles, const CellTable& table, bool w
         rows->clear();
     stencils.own_weights.clear();
     stencils.first_poor = stencils.poor = 0;
-    sph::with_dimension(particles, [&](auto dimension) {
-        build<dimension()>(particles, table, with_unseen, stencils);
-    });
+    sph::with_dimension(particles,
+                        [&](auto dimension) { build<dimension()>(particles, table, with_unseen, stencils); });
 }
 
 }  // namespace talus::soil

@@ -30,9 +30,8 @@ void advance_elements_in(ParticleSet& particles, const StencilRows& rows, Cells 
             if (D < 3) lateral += weight[0] * columns.lateral[j];
         }
         for (int a = 0; a < D; ++a)
-            columns.velocity[a][i] =
-                velocity[a] + half * (sums.divergence[a] / material.density +
-                                      settings.body_force[static_cast<std::size_t>(a)]);
+            columns.velocity[a][i] = velocity[a] + half * (sums.divergence[a] / material.density +
+                                                           settings.body_force[static_cast<std::size_t>(a)]);
         for (int c = 0; c < Columns::stresses; ++c) columns.stress[c][i] = stress[c];
         if (D < 3) columns.lateral[i] = lateral;
         columns.add_elastic(i, material.elasticity, sums.gradient, half);
@@ -114,8 +113,7 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
             own[a] = (on_faces[i] >> (2 * a) & 3) != 0 ? stencils.own_weights[std::size_t{row} * D + a] : 0;
         sums.add_stress(own, columns.stress, i);
         for (int a = 0; a < D; ++a)
-            memory.face_velocity[std::size_t{row} * D + static_cast<std::size_t>(a)] =
-                columns.velocity[a][i];
+            memory.face_velocity[std::size_t{row} * D + static_cast<std::size_t>(a)] = columns.velocity[a][i];
         accelerate(columns, i, sums, settings.materials[body[i]].density, settings);
         smooth_velocity(columns, i, rows.targets.size() + row, settings, memory);
     }
@@ -157,9 +155,8 @@ void apply_sources_in(ParticleSet& particles, const Stencils& stencils, const St
     const std::uint8_t* body = particles.data(field::body);
     double* strain = particles.data(soil_field::viscoplastic_strain);
     double* work = particles.data(soil_field::viscoplastic_work);
-    double* size = particles.has(soil_field::preconsolidation)
-                       ? particles.data(soil_field::preconsolidation)
-                       : nullptr;
+    double* size =
+        particles.has(soil_field::preconsolidation) ? particles.data(soil_field::preconsolidation) : nullptr;
     stencils.for_each_node([&](std::uint32_t i) {
         const Material& material = settings.materials[body[i]];
         if (!material.flows()) return;
@@ -177,16 +174,14 @@ void apply_sources_in(ParticleSet& particles, const Stencils& stencils, const St
 }  // namespace
 
 void apply_sources(ParticleSet& particles, const Stencils& stencils, const StepSettings& settings) {
-    sph::with_dimension(particles, [&](auto dimension) {
-        apply_sources_in<dimension()>(particles, stencils, settings);
-    });
+    sph::with_dimension(
+        particles, [&](auto dimension) { apply_sources_in<dimension()>(particles, stencils, settings); });
 }
 
 void gather_unseen(ParticleSet& particles, const StencilRows& rows, const StepSettings& settings,
                    StepMemory& memory) {
-    sph::with_dimension(particles, [&](auto dimension) {
-        gather_unseen_in<dimension()>(particles, rows, settings, memory);
-    });
+    sph::with_dimension(
+        particles, [&](auto dimension) { gather_unseen_in<dimension()>(particles, rows, settings, memory); });
 }
 
 void advance_elements(ParticleSet& particles, const StencilRows& rows, Cells which,
@@ -228,8 +223,8 @@ Tensor stress_at(const ParticleSet& particles, std::size_t i) {
 }
 
 void put_stress(ParticleSet& particles, std::size_t i, const Tensor& stress) {
-    sph::with_dimension(
-        particles, [&](auto dimension) { StateColumns<dimension()>(particles).put_stress(i, stress); });
+    sph::with_dimension(particles,
+                        [&](auto dimension) { StateColumns<dimension()>(particles).put_stress(i, stress); });
 }
 
 }  // namespace talus::soil

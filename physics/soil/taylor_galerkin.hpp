@@ -15,10 +15,10 @@ namespace talus::soil {
 
 /// What a step needs besides the particles.
 struct StepSettings {
-    double time_step = 0;                 ///< [s]
-    std::array<double, 3> body_force{};   ///< [m/s2]
-    double strength_factor = 1;           ///< on yield surfaces [1]
-    double damping = 0;                   ///< rate at which velocities decay [1/s]
+    double time_step = 0;                ///< [s]
+    std::array<double, 3> body_force{};  ///< [m/s2]
+    double strength_factor = 1;          ///< on yield surfaces [1]
+    double damping = 0;                  ///< rate at which velocities decay [1/s]
     /// Share of what elements cannot see of the velocity and of the stress that is taken away a step [1].
     double hourglass = 0, stress_smoothing = 0;
     std::span<const Material> materials;  ///< one a body

@@ -16,8 +16,7 @@ struct TimeFactor {
     double phase = 0;              ///< [rad]: cos(2 pi frequency t + phase)
 
     double operator()(double time) const {
-        const double harmonic =
-            frequency > 0 ? std::cos(2 * std::numbers::pi * frequency * time + phase) : 1;
+        const double harmonic = frequency > 0 ? std::cos(2 * std::numbers::pi * frequency * time + phase) : 1;
         if (times.empty()) return harmonic;
         const auto after = std::upper_bound(times.begin(), times.end(), time);
         if (after == times.begin()) return values.front() * harmonic;

@@ -63,7 +63,8 @@ class WallPass {
           pressure_(particles.data(field::pressure)),
           has_stress_(particles.has(field::predicted_stress)),
           partners_(x_, h_, kernel.support() * widening) {
-        if (has_stress_) stress_ = components_to_write<symmetric_count<D>>(particles, field::predicted_stress);
+        if (has_stress_)
+            stress_ = components_to_write<symmetric_count<D>>(particles, field::predicted_stress);
     }
 
     void visit(const CellEntry& cell, std::span<const Run> runs) {

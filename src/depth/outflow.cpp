@@ -47,7 +47,8 @@ Decomposition::Ledger Outflow::take(ParticleSet& particles, const Terrain& terra
     if (gone[0] > 0) particles.reorder(kept);
     if (count_ == 0)
         note_ = fmt::format(
-            "{} particles with {:.4g} m3 have left the terrain at time {:.4g} s, between ({:.6g}, {:.6g}) and "
+            "{} particles with {:.4g} m3 have left the terrain at time {:.4g} s, between ({:.6g}, {:.6g}) "
+            "and "
             "({:.6g}, {:.6g}) m; they are counted in the columns outflow_ of diagnostics.csv",
             sums[0], volume.value(), time, -place[2], -place[3], place[0], place[1]);
     count_ += sums[0];

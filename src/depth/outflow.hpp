@@ -16,8 +16,8 @@ class Outflow {
   public:
     explicit Outflow(const Communicator& comm) : comm_(comm) {}
 
-    /// Removes own particles whose place the terrain does not reach. Throws AgreedError (exit code 1) naming a
-    /// particle and the cell if one is over a hole of it. Collective.
+    /// Removes own particles whose place the terrain does not reach. Throws AgreedError (exit code 1) naming
+    /// a particle and the cell if one is over a hole of it. Collective.
     Decomposition::Ledger take(ParticleSet& particles, const Terrain& terrain, double time);
 
     std::uint64_t count() const { return count_; }

@@ -28,8 +28,8 @@ int check_depth_scene(const Communicator& comm, const Scene& scene) {
                evolution.total_particles(), comm.size(), evolution.particles().bytes_per_particle());
     const double steps = setup.output.end_time / first_step;
     fmt::print("first time step: {:.4g} s (limited by {} at particle {}); {:.0f} such steps to {} s\n",
-               first_step, evolution.simulation().step_limit().reason,
-               evolution.simulation().step_limit().id, std::ceil(steps), setup.output.end_time);
+               first_step, evolution.simulation().step_limit().reason, evolution.simulation().step_limit().id,
+               std::ceil(steps), setup.output.end_time);
     fmt::print("estimated cost: {:.3g} s a step on {} ranks, {:.3g} minutes for so many steps\n", seconds,
                comm.size(), seconds * steps / 60);
     return exit_done;

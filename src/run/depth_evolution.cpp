@@ -25,9 +25,10 @@ std::vector<std::string> DepthEvolution::warnings() const {
     const auto slope = terrain.slope(0, 0);
     const double steepness = std::hypot(slope[0], slope[1]);
     if (steepness <= gentle) return {};
-    return {fmt::format("the bed has a slope of {:.3g}, for which depth.form = \"cartesian\" is not meant; "
-                        "\"bed_fitted\" is",
-                        steepness)};
+    return {
+        fmt::format("the bed has a slope of {:.3g}, for which depth.form = \"cartesian\" is not meant; "
+                    "\"bed_fitted\" is",
+                    steepness)};
 }
 
 void DepthEvolution::create(const std::function<void()>&) {
@@ -59,9 +60,9 @@ std::vector<std::string> DepthEvolution::news() {
 
 std::vector<SnapshotField> DepthEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
-    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-             &field::velocity, &field::depth, &field::volume, &field::smoothing_length,
-             &field::surface_level})
+    for (const FieldInfo* info :
+         std::initializer_list<const FieldInfo*>{&field::velocity, &field::depth, &field::volume,
+                                                 &field::smoothing_length, &field::surface_level})
         if (simulation_->particles().has(*info)) fields.push_back({.field = info});
     return fields;
 }

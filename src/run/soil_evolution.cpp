@@ -12,9 +12,7 @@
 namespace talus {
 
 SoilEvolution::SoilEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until)
-    : comm_(comm),
-      setup_(read_soil_scene(comm, scene)),
-      end_time_(until.value_or(setup_.output.end_time)) {}
+    : comm_(comm), setup_(read_soil_scene(comm, scene)), end_time_(until.value_or(setup_.output.end_time)) {}
 
 void SoilEvolution::create(const std::function<void()>&) {
     simulation_.emplace(comm_, setup_.simulation, make_soil(comm_, setup_));
@@ -40,9 +38,10 @@ ReadCheckpoint SoilEvolution::read(const std::filesystem::path& what,
                            fmt::join(materials(), ", ")));
     simulation_.emplace(comm_, setup_.simulation, std::move(particles));
     if (found.state.time_step != simulation_->time_step())
-        refuse(fmt::format("has a time step of {} s, this scene one of {} s; neither stiffness nor "
-                           "soil.spacing nor soil.courant may change",
-                           found.state.time_step, simulation_->time_step()));
+        refuse(
+            fmt::format("has a time step of {} s, this scene one of {} s; neither stiffness nor "
+                        "soil.spacing nor soil.courant may change",
+                        found.state.time_step, simulation_->time_step()));
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return found;
 }

@@ -23,8 +23,7 @@ std::shared_ptr<const Terrain> read_plane(const Section& table, int dimension) {
     const double elevation = table.number("elevation", "m", 0.0);
     const double dip = table.number("dip", "rad", 0.0, not_negative);
     if (dip >= std::numbers::pi / 2) {
-        table.error("dip",
-                    fmt::format("is {:.4g} degrees; allowed: below 90", dip * 180 / std::numbers::pi));
+        table.error("dip", fmt::format("is {:.4g} degrees; allowed: below 90", dip * 180 / std::numbers::pi));
         return std::make_shared<Terrain>(0.0, std::array<double, 2>{});
     }
     const double azimuth = dimension == 2 ? table.number("dip_direction", "rad", 0.0) : 0;
@@ -40,11 +39,11 @@ std::optional<depth::EarthPressure> read_earth_pressure(const Section& table, do
     const double phi = table.number("internal_friction_angle", "rad", {}, positive);
     const double cos2 = std::cos(phi) * std::cos(phi), root2 = 1 - cos2 * (1 + bed_friction * bed_friction);
     if (phi >= std::numbers::pi / 2 || root2 < 0) {
-        table.error("internal_friction_angle",
-                    fmt::format("is {:.4g} degrees; allowed: from the bed's angle of friction, {:.4g} "
-                                "degrees, to below 90",
-                                phi * 180 / std::numbers::pi,
-                                std::atan(bed_friction) * 180 / std::numbers::pi));
+        table.error(
+            "internal_friction_angle",
+            fmt::format("is {:.4g} degrees; allowed: from the bed's angle of friction, {:.4g} "
+                        "degrees, to below 90",
+                        phi * 180 / std::numbers::pi, std::atan(bed_friction) * 180 / std::numbers::pi));
         return {};
     }
     return depth::EarthPressure{.active = 2 * (1 - std::sqrt(root2)) / cos2 - 1,
@@ -70,7 +69,8 @@ depth::Settings read_settings(const Section& table, int dimension, const DepthSe
     settings.earth_pressure = read_earth_pressure(table, friction_coefficient(setup.friction));
     if (settings.gradient == depth::Gradient::balanced) {
         if (fitted)
-            table.error("gradient", "a surface that is level needs form = \"cartesian\"; allowed: conservative");
+            table.error("gradient",
+                        "a surface that is level needs form = \"cartesian\"; allowed: conservative");
         if (settings.earth_pressure)
             table.error("internal_friction_angle", "needs gradient = \"conservative\"");
     }
@@ -103,9 +103,9 @@ Release read_release(const Section& table, const BodyContext& context, double fi
         const auto count = static_cast<double>(table.integer("particles", {}, 1, 2000000000));
         release.spacing = std::pow(volume(release.shape, context.dimension) / count, 1.0 / context.dimension);
     } else {
-        release.spacing = table.number(
-            "spacing", "m", first_spacing > 0 ? std::optional<double>(first_spacing) : std::nullopt,
-            positive);
+        release.spacing =
+            table.number("spacing", "m",
+                         first_spacing > 0 ? std::optional<double>(first_spacing) : std::nullopt, positive);
     }
     return release;
 }

@@ -19,8 +19,8 @@ double read_coefficient(const Section& table) {
     if (table.has("angle") || !table.has("coefficient")) {
         const double angle = table.number("angle", "rad", {}, not_negative);
         if (angle >= std::numbers::pi / 2) {
-            table.error("angle", fmt::format("is {:.4g} degrees; allowed: below 90",
-                                             angle * 180 / std::numbers::pi));
+            table.error("angle",
+                        fmt::format("is {:.4g} degrees; allowed: below 90", angle * 180 / std::numbers::pi));
             return 0;
         }
         return std::tan(angle);

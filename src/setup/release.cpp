@@ -122,8 +122,7 @@ std::vector<ReleasedColumn> columns_of(const Release& release, const Terrain& te
             if (!release.level && !unknown && !terrain.contains(place[0], place[1])) unknown = place;
             const double depth = lattice.depth(place);
             greatest = std::max(greatest, depth);
-            columns.push_back(
-                {place, depth, lattice.volume(place, depth), lattice.smoothing_length(), 1});
+            columns.push_back({place, depth, lattice.volume(place, depth), lattice.smoothing_length(), 1});
             sites.push_back({x, y});
         }
     std::size_t kept = 0;

@@ -28,7 +28,7 @@ struct ReleasedColumn {
     double depth;             ///< as the model's form means it [m]
     double volume;            ///< [m3]
     double smoothing_length;  ///< [m]
-    double correction;        ///< depth over the kernel sum of the columns that continue the release all around
+    double correction;  ///< depth over the kernel sum of the columns that continue the release all around
 };
 
 /// The columns of a release, on a lattice of squares that fits its bounds, in order of y, then x. Those where

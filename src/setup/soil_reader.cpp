@@ -24,8 +24,7 @@ soil::YieldSurface read_surface(const Section& table) {
                               .hardening = table.number("hardening", "Pa", 0.0),
                               .residual = table.number("residual", "Pa", 0.0, not_negative)};
     if (kind == "drucker_prager") {
-        const std::string fit =
-            table.choice("fit", {"plane_strain", "outer", "inner"}, "plane_strain");
+        const std::string fit = table.choice("fit", {"plane_strain", "outer", "inner"}, "plane_strain");
         const double friction = table.number("friction_angle", "rad", {}, acute);
         return soil::DruckerPrager{
             .cohesion = table.number("cohesion", "Pa", {}, not_negative),
@@ -72,9 +71,8 @@ soil::Material read_soil_material(const Section& root, const Section& body) {
     material.overstress.fluidity = yield.number("fluidity", "s-1", {}, positive);
     material.overstress.exponent = yield.number("exponent", "1", 1.0, {1, 10});
     const double reference = default_reference(material.surface);
-    material.overstress.reference =
-        reference > 0 ? yield.number("reference", "Pa", reference, positive)
-                      : yield.number("reference", "Pa", {}, positive);
+    material.overstress.reference = reference > 0 ? yield.number("reference", "Pa", reference, positive)
+                                                  : yield.number("reference", "Pa", {}, positive);
     return material;
 }
 
@@ -93,8 +91,8 @@ soil::TimeFactor read_time_factor(const Section& table, std::string_view key) {
     for (std::size_t k = 1; k < factor.times.size(); ++k) rising &= factor.times[k - 1] < factor.times[k];
     if (!rising) change.error("times", "must rise");
     if (factor.values.size() != factor.times.size()) {
-        change.error("values", fmt::format("has {} values for {} times", factor.values.size(),
-                                           factor.times.size()));
+        change.error("values",
+                     fmt::format("has {} values for {} times", factor.values.size(), factor.times.size()));
         return {};
     }
     return factor;

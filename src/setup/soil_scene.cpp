@@ -73,7 +73,8 @@ void read_lattice(const Scene& scene, const std::vector<Section>& tables, SoilSc
             refuse_misfit(tables[b], *box, lattice);
     double total = 1;
     for (std::size_t a = 0; a < axes; ++a) {
-        const double count = std::max(1.0, std::ceil((upper[a] - lattice.origin[a]) / lattice.spacing - 1e-6));
+        const double count =
+            std::max(1.0, std::ceil((upper[a] - lattice.origin[a]) / lattice.spacing - 1e-6));
         total *= count;
         lattice.cells[a] = static_cast<long>(std::min(count, most_cells));
     }
@@ -86,10 +87,9 @@ void read_lattice(const Scene& scene, const std::vector<Section>& tables, SoilSc
             for (long x = 0; x < lattice.cells[0]; ++x) {
                 Point centre = lattice.corner({x, y, z});
                 for (std::size_t a = 0; a < axes; ++a) centre[a] += 0.5 * lattice.spacing;
-                const auto found =
-                    std::find_if(soil.bodies.begin(), soil.bodies.end(), [&](const SoilBody& body) {
-                        return contains(body.shape, centre, lattice.dimension);
-                    });
+                const auto found = std::find_if(
+                    soil.bodies.begin(), soil.bodies.end(),
+                    [&](const SoilBody& body) { return contains(body.shape, centre, lattice.dimension); });
                 const bool is_soil = found != soil.bodies.end();
                 if (is_soil) ++elements[static_cast<std::size_t>(found - soil.bodies.begin())];
                 lattice.body_of_cell.push_back(
@@ -205,9 +205,8 @@ bool holds(const SoilScene& scene, std::size_t condition, const SoilLattice::Nod
 
 bool holds_somewhere(const SoilScene& scene, std::size_t condition) {
     bool found = false;
-    for_each_node(scene.lattice, [&](const SoilLattice::Node& node) {
-        found = found || holds(scene, condition, node);
-    });
+    for_each_node(scene.lattice,
+                  [&](const SoilLattice::Node& node) { found = found || holds(scene, condition, node); });
     return found;
 }
 
@@ -230,8 +229,7 @@ Point middle_of(const SoilScene& scene, const SoilLattice::Index& cell) {
     const unsigned corners = 1u << scene.lattice.dimension;
     for (unsigned k = 0; k < corners; ++k) {
         SoilLattice::Index index = cell;
-        for (unsigned a = 0; a < static_cast<unsigned>(scene.lattice.dimension); ++a)
-            index[a] += k >> a & 1;
+        for (unsigned a = 0; a < static_cast<unsigned>(scene.lattice.dimension); ++a) index[a] += k >> a & 1;
         sum = plus(sum, place_of(scene, scene.lattice.node_at(index)));
     }
     return times(1.0 / corners, sum);
@@ -258,8 +256,7 @@ void put(const SoilScene& scene, ParticleSet& particles, std::uint64_t id, const
     particles.data(field::smoothing_length)[i] = scene.smoothing * scene.lattice.spacing;
     for (int a = 0; a < particles.dimension(); ++a) {
         particles.data(field::position, a)[i] = at[static_cast<std::size_t>(a)];
-        particles.data(soil_field::velocity, a)[i] =
-            scene.bodies[body].velocity[static_cast<std::size_t>(a)];
+        particles.data(soil_field::velocity, a)[i] = scene.bodies[body].velocity[static_cast<std::size_t>(a)];
     }
     soil::put_stress(particles, i, stress_at_start(scene, at, scene.simulation.materials[body].density));
 }

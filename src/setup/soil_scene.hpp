@@ -22,9 +22,9 @@ struct SoilBody {
 /// Effective stress at the start: a pressure, and the weight of what is above with a ratio of horizontal to
 /// vertical stress.
 struct InitialStress {
-    double pressure = 0;             ///< compression positive [Pa]
-    std::optional<double> surface;   ///< height of the surface along gravity's axis [m]; none: no weight
-    double lateral_ratio = 1;        ///< K0 [1]
+    double pressure = 0;            ///< compression positive [Pa]
+    std::optional<double> surface;  ///< height of the surface along gravity's axis [m]; none: no weight
+    double lateral_ratio = 1;       ///< K0 [1]
 };
 
 /// Where a boundary condition holds.

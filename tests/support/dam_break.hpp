@@ -7,8 +7,8 @@ struct ShallowState {
     double depth, velocity;  ///< [m], [m/s]
 };
 
-/// A dam at x = 0 vanishes at time 0: water of one depth to the left, none or less to the right, on a level bed.
-/// A. Ritter, Z. Ver. Dtsch. Ing. 36 (1892) 947; J. J. Stoker, Water Waves (1957), section 10.8.
+/// A dam at x = 0 vanishes at time 0: water of one depth to the left, none or less to the right, on a level
+/// bed. A. Ritter, Z. Ver. Dtsch. Ing. 36 (1892) 947; J. J. Stoker, Water Waves (1957), section 10.8.
 class DamBreak {
   public:
     DamBreak(double upstream, double downstream, double gravity);

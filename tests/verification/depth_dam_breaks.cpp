@@ -35,12 +35,11 @@ void expect_convergence(const std::vector<Errors>& errors, const Errors& finest,
 }
 
 Errors errors_of(const DepthResult& flow, const reference::DamBreak& exact, double low, double high) {
-    return {flow.mean_error(
-                [&](std::size_t k) { return flow.depth[k] - exact.at(flow.x[k], flow.time).depth; }, low,
-                high),
-            flow.mean_error(
-                [&](std::size_t k) { return flow.u[k] - exact.at(flow.x[k], flow.time).velocity; }, low,
-                high)};
+    return {
+        flow.mean_error([&](std::size_t k) { return flow.depth[k] - exact.at(flow.x[k], flow.time).depth; },
+                        low, high),
+        flow.mean_error([&](std::size_t k) { return flow.u[k] - exact.at(flow.x[k], flow.time).velocity; },
+                        low, high)};
 }
 
 TEST(DepthDamBreak, OnADryBedConverges) {

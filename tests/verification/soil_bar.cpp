@@ -59,8 +59,8 @@ Errors taylor_sph(int elements, double courant) {
     return errors_of(x, stress);
 }
 
-/// Linear finite elements with a consistent mass and Newmark's average acceleration (beta = 1/4, gamma = 1/2),
-/// the usual scheme of structural dynamics; the stress is that of the elements.
+/// Linear finite elements with a consistent mass and Newmark's average acceleration (beta = 1/4, gamma =
+/// 1/2), the usual scheme of structural dynamics; the stress is that of the elements.
 Errors newmark(int elements, double courant) {
     const auto n = static_cast<std::size_t>(elements);
     const double h = length / elements, density = 2000, stiffness = density * wave_speed * wave_speed;
@@ -114,21 +114,22 @@ bool is_root() { return Communicator(MPI_COMM_WORLD).is_root(); }
 TEST(SoilBar, SuddenLoadIsCarriedToRoundingAtTheLargestStep) {
     const Communicator alone(MPI_COMM_SELF);
     double worst = 0;
-    run_soil(alone, soil_scene(alone, runs / "bar_sudden_load", {}, true), [&](const SoilSimulation& simulation) {
-        for (const std::size_t i : soil_nodes(simulation.particles())) {
-            const double x = simulation.particles().data(field::position)[i], t = simulation.time();
-            const double before = exact_stress(x, t - 1e-7), after = exact_stress(x, t + 1e-7);
-            if (before != after) continue;  // a front is just there
-            const double stress = simulation.particles().data(soil_field::stress)[i];
-            worst = std::max(worst, std::abs(stress - before) / load);
-        }
-    });
+    run_soil(alone, soil_scene(alone, runs / "bar_sudden_load", {}, true),
+             [&](const SoilSimulation& simulation) {
+                 for (const std::size_t i : soil_nodes(simulation.particles())) {
+                     const double x = simulation.particles().data(field::position)[i], t = simulation.time();
+                     const double before = exact_stress(x, t - 1e-7), after = exact_stress(x, t + 1e-7);
+                     if (before != after) continue;  // a front is just there
+                     const double stress = simulation.particles().data(soil_field::stress)[i];
+                     worst = std::max(worst, std::abs(stress - before) / load);
+                 }
+             });
     EXPECT_LT(worst, 1e-10);  // of rounding, over the 400 steps
 }
 
 TEST(SoilBar, SuddenLoadConvergesWithLittleOvershootAtSmallerSteps) {
-    // Stands beside the linear finite element with Newmark's method. A front smeared over h^(2/3) (a scheme of
-    // second order, P. D. Lax) makes an L1 error of the order 2/3.
+    // Stands beside the linear finite element with Newmark's method. A front smeared over h^(2/3) (a scheme
+    // of second order, P. D. Lax) makes an L1 error of the order 2/3.
     std::vector<Errors> ours, theirs;
     for (const int n : {50, 100, 200}) {
         ours.push_back(taylor_sph(n, 0.9));
