@@ -24,13 +24,23 @@ inline constexpr Field<double> apparent_gravity{
     state,
     owner,
     "gravity and what the curvature of the bed asks of the velocity, along the vertical"};
-inline constexpr Field<double> depth_correction{
-    "depth_correction", "1", scalar, state, owner, "depth over the kernel sum of the columns around"};
+inline constexpr Field<double> still_acceleration{
+    "still_acceleration",
+    "m s-2",
+    vector,
+    state,
+    owner,
+    "what the sums over columns make of a lake that should stay at rest, taken off the acceleration"};
 
 inline constexpr Field<double> column_height{
     "column_height", "m", scalar, work, owner, "kernel sum of the volumes around: volume for each plan area"};
-inline constexpr Field<double> grad_h_factor{
-    "grad_h_factor", "1", scalar, work, owner, "of the varying smoothing length in gradients"};
+inline constexpr Field<double> grad_h_volume{
+    "grad_h_volume",
+    "m3",
+    scalar,
+    work,
+    halo,
+    "what the varying smoothing length of a column takes off the volumes of its partners in gradients"};
 inline constexpr Field<double> pressure_factor{"pressure_factor",
                                                "m s-2",
                                                scalar,
@@ -41,8 +51,6 @@ inline constexpr Field<double> wave_speed{"wave_speed", "m s-1", scalar,
                                           work,         halo,    "speed of long waves in plan"};
 inline constexpr Field<double> signal_speed{
     "signal_speed", "m s-1", scalar, work, owner, "greatest speed of approach of a signal from a partner"};
-inline constexpr Field<double> surface_level{
-    "surface_level", "m", scalar, work, halo, "elevation of the free surface"};
 inline constexpr Field<double> divergence{"divergence", "s-1", scalar,
                                           work,         owner, "divergence of the velocity in plan"};
 

@@ -8,6 +8,7 @@
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
 #include "domain/depth_fields.hpp"
+#include "domain/pore_pressure_field.hpp"
 #include "src/step_support.hpp"
 
 namespace talus {
@@ -32,22 +33,22 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     const depth::Settings& settings = setup.settings;
     add({&field::velocity, &field::volume, &field::smoothing_length, &field::depth, &field::acceleration,
          &field::predicted_velocity, &field::next_smoothing_length, &field::column_height,
-         &field::grad_h_factor, &field::wave_speed, &field::signal_speed});
-    if (settings.gradient == depth::Gradient::balanced)
-        add({&field::surface_level, &field::depth_correction});
-    else
-        add({&field::pressure_factor});
-    if (settings.needs_divergence()) add({&field::divergence});
+         &field::grad_h_volume, &field::pressure_factor, &field::wave_speed, &field::signal_speed});
+    if (settings.balance) add({&field::still_acceleration});
+    if (settings.earth_pressure) add({&field::divergence});
     const bool fitted = settings.form == depth::Form::bed_fitted;
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
     if (fitted || !level) add({&field::bed_slope});
     if (fitted) add({&field::apparent_gravity});
+    if (setup.pore_pressure) particles.add(field::pore_pressure, setup.pore_pressure->points);
 }
 
 double DepthSimulation::interaction_radius() const {
     double largest = 0;
     for (const double s : particles_.own(field::smoothing_length)) largest = std::max(largest, s);
-    return comm_.all_max(largest) * depth::Settings::support();
+    largest = comm_.all_max(largest);
+    if (largest == 0) largest = setup_.settings.largest_smoothing_length;  // all have left the terrain
+    return largest * depth::Settings::support();
 }
 
 double DepthSimulation::work() const {
@@ -111,7 +112,7 @@ void DepthSimulation::step() {
     evaluate(dt / 2);
     phases_.enter(Phase::motion);
     depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
-    if (setup_.settings.gradient == depth::Gradient::balanced) depth::relax_corrections(particles_, dt);
+    if (setup_.settings.balance) depth::fade_balance(particles_, dt);
     time_ += dt;
     ++step_;
     conclude_step();
@@ -125,7 +126,7 @@ void DepthSimulation::find_heights() {
     const auto pass = [&](Cells cells) {
         depth::height_pass(particles_, decomposition_.table(), cells, settings);
     };
-    if (settings.needs_divergence())
+    if (settings.earth_pressure)
         overlapped(phases_, Phase::density, decomposition_.halo(), particles_,
                    {&field::position, &field::volume, &field::predicted_velocity}, pass);
     else
@@ -139,15 +140,14 @@ void DepthSimulation::evaluate(double time_ahead) {
     depth::predict(particles_, setup_.settings, setup_.friction, time_ahead);
     find_heights();
     phases_.enter(Phase::material);
+    const std::vector<double> loads_before = loads();
     depth::meet_bed(particles_, *setup_.terrain, setup_.settings);
+    if (setup_.pore_pressure) consolidate(loads_before, 2 * time_ahead);
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
-    const FieldInfo* pressure = setup_.settings.gradient == depth::Gradient::balanced
-                                    ? static_cast<const FieldInfo*>(&field::surface_level)
-                                    : &field::pressure_factor;
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
                {&field::position, &field::volume, &field::smoothing_length, &field::predicted_velocity,
-                &field::depth, &field::wave_speed, pressure},
+                &field::depth, &field::wave_speed, &field::pressure_factor, &field::grad_h_volume},
                [&](Cells cells) {
                    depth::pressure_pass(particles_, decomposition_.table(), cells, setup_.settings,
                                         pass_count_);
@@ -160,10 +160,43 @@ void DepthSimulation::evaluate(double time_ahead) {
     work_measured_ = true;
 }
 
+/// What loads the mixture of grains and water at the bed; nothing without pore pressure. The bed's curvature
+/// is left out: its short bumps would drain the flow.
+std::vector<double> DepthSimulation::loads() const {
+    std::vector<double> found;
+    if (!setup_.pore_pressure) return found;
+    const depth::Settings& settings = setup_.settings;
+    const double unit_weight = setup_.pore_pressure->loaded_share * settings.density * settings.gravity;
+    const bool fitted = settings.form == depth::Form::bed_fitted;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+        std::array<double, 2> slope{};
+        for (int a = 0; fitted && a < particles_.dimension(); ++a)
+            slope[static_cast<std::size_t>(a)] = particles_.data(field::bed_slope, a)[i];
+        found.push_back(unit_weight * depth::Tilt(slope).cosine * particles_.data(field::depth)[i]);
+    }
+    return found;
+}
+
+void DepthSimulation::consolidate(std::span<const double> loads_before, double time_step) {
+    const PorePressure& model = *setup_.pore_pressure;
+    std::vector<double*> pressure;
+    for (int k = 0; k < model.points; ++k) pressure.push_back(particles_.data(field::pore_pressure, k));
+    const std::vector<double> loads_after = loads();
+    if (step_ == 0 && time_step == 0) return depth::set_pore_pressure(model.ratio, loads_after, pressure);
+    const depth::LoadedColumns columns{std::as_const(particles_).own(field::depth), loads_before,
+                                       loads_after};
+    if (model.points == 1)
+        depth::consolidate_first_mode(model.law, columns, time_step, particles_.own(field::pore_pressure));
+    else
+        depth::consolidate_profile(model.law, columns, time_step, pressure);
+}
+
 void DepthSimulation::conclude_step() {
     limit_ = depth::stable_time_step(particles_, setup_.settings);
     phases_.enter(Phase::wait);
+    const double before = time_step_;
     time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);
+    if (std::isinf(time_step_)) time_step_ = before;  // all have left the terrain
 }
 
 }  // namespace talus

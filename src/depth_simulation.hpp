@@ -3,13 +3,17 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "comm/communicator.hpp"
 #include "comm/decomposition.hpp"
 #include "domain/box.hpp"
 #include "domain/particles.hpp"
 #include "domain/terrain.hpp"
+#include "physics/depth/consolidation.hpp"
 #include "physics/depth/motion.hpp"
 #include "physics/depth/passes.hpp"
 #include "physics/depth/settings.hpp"
@@ -19,12 +23,21 @@
 
 namespace talus {
 
+/// Excess pore pressure at the bed, which takes from its friction.
+struct PorePressure {
+    depth::Consolidation law;
+    int points = 1;           ///< of a profile over the depth; 1: the first mode alone
+    double ratio = 1;         ///< of the pressure at the start to the load
+    double loaded_share = 1;  ///< of the normal stress that loads the mixture: 1, or less under buoyancy
+};
+
 /// Everything that defines a depth-integrated run besides the particles: what a scene says, resolved.
 struct DepthSetup {
     Box box;  ///< in plan, of one dimension or two
     std::shared_ptr<const Terrain> terrain;
     depth::Settings settings;
     depth::BasalFriction friction;
+    std::optional<PorePressure> pore_pressure{};
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance
 };
@@ -92,6 +105,8 @@ class DepthSimulation {
     void find_heights();
     double change_of_smoothing_lengths() const;
     void evaluate(double time_ahead);
+    std::vector<double> loads() const;
+    void consolidate(std::span<const double> loads_before, double time_step);
     void conclude_step();
 
     const Communicator& comm_;

@@ -28,22 +28,16 @@ template <int D>
 void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settings) {
     const auto x = sph::components<D>(particles, field::position),
                v = sph::components<D>(particles, field::predicted_velocity);
-    const double *height = particles.data(field::column_height),
-                 *grad_h = particles.data(field::grad_h_factor);
+    const double* height = particles.data(field::column_height);
     const auto next = std::as_const(particles).own(field::next_smoothing_length);
     std::copy(next.begin(), next.end(), particles.data(field::smoothing_length));
     double *depth = particles.data(field::depth), *wave_speed = particles.data(field::wave_speed);
-    const auto if_any = [&](const Field<double>& one) {
-        return particles.has(one) ? particles.data(one) : nullptr;
-    };
     std::array<double*, D> slope{};
     if (particles.has(field::bed_slope)) slope = sph::components_to_write<D>(particles, field::bed_slope);
-    double* const apparent = if_any(field::apparent_gravity);
-    double* const factor = if_any(field::pressure_factor);
-    double* const level = if_any(field::surface_level);
-    const double* const correction = if_any(field::depth_correction);
-    const double* const divergence = if_any(field::divergence);
+    double* factor = particles.data(field::pressure_factor);
+    const double* divergence = settings.earth_pressure ? particles.data(field::divergence) : nullptr;
     const bool fitted = settings.form == Form::bed_fitted;
+    double* apparent = fitted ? particles.data(field::apparent_gravity) : nullptr;
     const double half = 0.5 * lattice_factor<D>(settings);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const TerrainPoint ground = terrain.at(x[0][i], D == 2 ? x[D - 1][i] : 0.0);
@@ -59,15 +53,14 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
             apparent[i] = settings.gravity + centripetal<D>(ground, v_i);
             tilt = Tilt(slope_i);
         }
-        const double column = correction ? correction[i] * height[i] : height[i];
-        depth[i] = column * tilt.cosine;
-        const double along_normal =
-            fitted ? normal_gravity(settings, apparent[i], tilt.cosine) : settings.gravity;
+        depth[i] = height[i] * tilt.cosine;
+        // Without the pull of the bed's curvature: where a fast flow leaves a bump, columns that do not press
+        // on the bed would not push each other apart either, and heap up in a point.
+        const double along_normal = settings.gravity * tilt.cosine;
         const double lateral_gravity =
             lateral(settings, divergence ? divergence[i] : 0) * along_normal * tilt.cosine;
-        wave_speed[i] = std::sqrt(lateral_gravity * column);
-        if (factor) factor[i] = half * lateral_gravity / grad_h[i];
-        if (level) level[i] = ground.elevation + depth[i];
+        wave_speed[i] = std::sqrt(lateral_gravity * height[i]);
+        factor[i] = half * lateral_gravity;
     }
 }
 
@@ -99,11 +92,18 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
 }
 
 void slide_on_bed(ParticleSet& particles, const Settings& settings) {
-    if (settings.gradient == Gradient::balanced || !particles.has(field::bed_slope)) return;
-    if (particles.dimension() == 1)
-        slide<1>(particles, settings);
-    else
-        slide<2>(particles, settings);
+    if (particles.has(field::bed_slope)) {
+        if (particles.dimension() == 1)
+            slide<1>(particles, settings);
+        else
+            slide<2>(particles, settings);
+    }
+    if (!settings.balance) return;
+    for (int axis = 0; axis < particles.dimension(); ++axis) {
+        double* a = particles.data(field::acceleration, axis);
+        for (const double still : std::as_const(particles).own(field::still_acceleration, axis))
+            *a++ -= still;
+    }
 }
 
 }  // namespace talus::depth

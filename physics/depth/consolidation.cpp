@@ -16,17 +16,17 @@ using Row = std::array<double, block>;
 
 }  // namespace
 
-void consolidate_first_mode(const Consolidation& law, const ChangingDepths& depths, double time_step,
+void consolidate_first_mode(const Consolidation& law, const LoadedColumns& columns, double time_step,
                             std::span<double> bed_pressure) {
     const double rate = std::numbers::pi * std::numbers::pi / 4 * law.coefficient * time_step;
     for (std::size_t i = 0; i < bed_pressure.size(); ++i) {
-        const double depth = depths.after[i];
-        const double loaded = bed_pressure[i] + law.unit_weight * (depth - depths.before[i]);
+        const double depth = columns.depth[i];
+        const double loaded = bed_pressure[i] + (columns.load_after[i] - columns.load_before[i]);
         bed_pressure[i] = depth > 0 ? std::max(loaded, 0.0) * std::exp(-rate / (depth * depth)) : 0.0;
     }
 }
 
-void consolidate_profile(const Consolidation& law, const ChangingDepths& depths, double time_step,
+void consolidate_profile(const Consolidation& law, const LoadedColumns& columns, double time_step,
                          std::span<double* const> pressure) {
     const std::size_t points = pressure.size();
     const auto count = static_cast<double>(points);
@@ -35,11 +35,11 @@ void consolidate_profile(const Consolidation& law, const ChangingDepths& depths,
     const double first_coupling = law.base == Base::impermeable ? 2 : 0;
     std::vector<Row> upper(points);
     Row ratio, gained;
-    for (std::size_t first = 0; first < depths.after.size(); first += block) {
-        const std::size_t lanes = std::min(block, depths.after.size() - first);
+    for (std::size_t first = 0; first < columns.depth.size(); first += block) {
+        const std::size_t lanes = std::min(block, columns.depth.size() - first);
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const double depth = depths.after[first + lane];
-            gained[lane] = law.unit_weight * (depth - depths.before[first + lane]);
+            const double depth = columns.depth[first + lane];
+            gained[lane] = columns.load_after[first + lane] - columns.load_before[first + lane];
             ratio[lane] =
                 std::min(almost_infinite, law.coefficient * time_step * count * count / (depth * depth));
         }
@@ -71,12 +71,10 @@ void consolidate_profile(const Consolidation& law, const ChangingDepths& depths,
     }
 }
 
-void set_pore_pressure(double ratio, double unit_weight, std::span<const double> depth,
-                       std::span<double* const> pressure) {
+void set_pore_pressure(double ratio, std::span<const double> load, std::span<double* const> pressure) {
     for (std::size_t k = 0; k < pressure.size(); ++k) {
         const double share = 1 - static_cast<double>(k) / static_cast<double>(pressure.size());
-        for (std::size_t i = 0; i < depth.size(); ++i)
-            pressure[k][i] = ratio * unit_weight * depth[i] * share;
+        for (std::size_t i = 0; i < load.size(); ++i) pressure[k][i] = ratio * load[i] * share;
     }
 }
 

@@ -24,7 +24,7 @@ class HeightPass {
           smoothing_length_(particles.data(field::smoothing_length)),
           next_(particles.data(field::next_smoothing_length)),
           height_(particles.data(field::column_height)),
-          grad_h_(particles.data(field::grad_h_factor)),
+          grad_h_(particles.data(field::grad_h_volume)),
           partners_(components<D>(particles, field::position), smoothing_length_, Settings::support()),
           records_(particles, table, which) {
         records_.copy(0, components<D>(particles, field::position));
@@ -50,25 +50,28 @@ class HeightPass {
                                  record_size = with_divergence ? 2 * D + 1 : D + 1;
     static constexpr auto as_copied = [](const sph::Neighbours&, auto&) {};
     struct Sums {
-        double height;      ///< sum V W [m]
-        double dilation;    ///< sum V r dW/dr, negative [m]
-        double divergence;  ///< sum V (v_j - v_i) grad W [m/s]
+        double number, height;                    ///< sum W [1/m^D], sum V W [m]
+        double number_dilation, height_dilation;  ///< the same of r dW/dr, negative
+        double divergence;                        ///< sum (v_j - v_i) grad W
     };
 
     [[gnu::flatten]] Sums sum_over_partners(std::uint32_t i) {
         const auto own = sph::broadcast(records_[i]);
         const Lanes inverse_s = 1 / smoothing_length_[i];
         const std::span<const std::uint32_t> partners = partners_.index();
-        LaneSum height, dilation, divergence;
+        LaneSum number, height, number_dilation, height_dilation, divergence;
         for (std::size_t k = 0; k < partners.size(); k += lane_count) {
             const auto other = records_.gather(partners.data() + k);
             sph::Vector<Lanes, D> r;
             for (std::size_t d = 0; d < D; ++d) r[d] = own[d] - other[d];
             const Lanes r2 = sph::dot(r, r);
-            const Lanes volume = select(first_lanes(partners.size() - k), other[place_volume], Lanes(0.0));
-            const Lanes slope = volume * kernel_.factor(r2, inverse_s);
-            height.add(k, volume * kernel_.value(r2, inverse_s));
-            dilation.add(k, slope * r2);
+            const LaneMask real = first_lanes(partners.size() - k);
+            const Lanes slope = select(real, kernel_.factor(r2, inverse_s), Lanes(0.0)),
+                        value = select(real, kernel_.value(r2, inverse_s), Lanes(0.0));
+            number.add(k, value);
+            height.add(k, other[place_volume] * value);
+            number_dilation.add(k, slope * r2);
+            height_dilation.add(k, other[place_volume] * slope * r2);
             if constexpr (with_divergence) {
                 Lanes closing = 0;
                 for (std::size_t d = 0; d < D; ++d)
@@ -76,35 +79,29 @@ class HeightPass {
                 divergence.add(k, slope * closing);
             }
         }
-        return {factor_ * height.total(), factor_ * dilation.total(), factor_ * divergence.total()};
+        return {factor_ * number.total(), factor_ * height.total(), factor_ * number_dilation.total(),
+                factor_ * height_dilation.total(), factor_ * divergence.total()};
     }
 
-    /// Newton's step for sum V W(r, s) = V (eta/s)^D. By the scaling of kernels s dW/ds = -(D W + r dW/dr).
+    /// Newton's step for sum W(r, s) = (eta/s)^D. By the scaling of kernels s dW/ds = -(D W + r dW/dr).
     void store(std::uint32_t i, const Sums& sums) {
         const double s = smoothing_length_[i], volume = records_[i].values[place_volume];
-        const double height = sums.height + own_share(volume, s);
-        const double wanted = height_at(volume, s), change = D * (wanted - height) - sums.dilation;
-        const double step = change > 0 ? 1 - (height - wanted) / change : greatest_change;
-        const double next = s * std::clamp(step, least_change, greatest_change);
-        const double most = settings_.largest_smoothing_length;
-        next_[i] = next < most ? next : most;
-        if (next < most) {
-            height_[i] = height_at(volume, next);
-            // An isolated column has no partner to lose: then nothing depends on the factor.
-            grad_h_[i] = std::max(-sums.dilation / (D * height), least_grad_h);
-        } else {
-            const double grown = height - (D * height + sums.dilation) * (most / s - 1);
-            height_[i] = std::max(grown, own_share(volume, most));
-            grad_h_[i] = 1;
-        }
-        if constexpr (with_divergence) divergence_[i] = sums.divergence / height;
+        const double number = sums.number + own_share(s), height = sums.height + volume * own_share(s);
+        double wanted = 1;
+        for (int d = 0; d < D; ++d) wanted *= settings_.eta / s;
+        const double change = D * (wanted - number) - sums.number_dilation;
+        const double step = change > 0 ? 1 - (number - wanted) / change : greatest_change;
+        const double found = s * std::clamp(step, least_change, greatest_change);
+        const double most = settings_.largest_smoothing_length, next = found < most ? found : most;
+        const double stretched = D * height + sums.height_dilation;
+        next_[i] = next;
+        height_[i] = std::max(height - stretched * (next / s - 1), volume * own_share(next));
+        // The force between two far from all others would be beyond bounds.
+        const double dilation = std::min(sums.number_dilation, -least_grad_h * D * number);
+        grad_h_[i] = found < most ? stretched / dilation : 0;
+        if constexpr (with_divergence) divergence_[i] = sums.divergence / number;
     }
-    double own_share(double volume, double s) const { return factor_ * volume * kernel_.value(0.0, 1 / s); }
-    double height_at(double volume, double s) const {
-        double ratio = volume;
-        for (int d = 0; d < D; ++d) ratio *= settings_.eta / s;
-        return ratio;
-    }
+    double own_share(double s) const { return factor_ * kernel_.value(0.0, 1 / s); }
 
     static constexpr double least_grad_h = 0.1;
     const Kernel<D> kernel_{};
@@ -126,7 +123,7 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
 
 template <int D>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
-    if (settings.needs_divergence())
+    if (settings.earth_pressure)
         run<D, true>(particles, table, which, settings);
     else
         run<D, false>(particles, table, which, settings);

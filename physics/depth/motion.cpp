@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "domain/depth_fields.hpp"
+#include "domain/pore_pressure_field.hpp"
 #include "physics/sph/pass_support.hpp"
 
 namespace talus::depth {
@@ -41,6 +42,19 @@ class Bed {
     const double* apparent_ = nullptr;
 };
 
+/// Whether a column at rest feels no more than what rounding makes of a balance.
+template <int D>
+bool is_held(const std::array<const double*, D>& v, const std::array<const double*, D>& a, std::size_t i,
+             double gravity) {
+    constexpr double rounding = 1e-10;  // a hundred times that of the sums, over gravity
+    double acceleration2 = 0;
+    for (std::size_t d = 0; d < D; ++d) {
+        if (v[d][i] != 0) return false;
+        acceleration2 += a[d][i] * a[d][i];
+    }
+    return acceleration2 < rounding * gravity * (rounding * gravity);
+}
+
 template <int D, class Law>
 void advance(ParticleSet& particles, const Settings& settings, const Law& law, double time,
              const Field<double>& to) {
@@ -48,14 +62,18 @@ void advance(ParticleSet& particles, const Settings& settings, const Law& law, d
                a = sph::components<D>(particles, field::acceleration);
     const auto moved = sph::components_to_write<D>(particles, to);
     const double* depth = particles.data(field::depth);
+    const double* pore_pressure =
+        particles.has(field::pore_pressure) ? particles.data(field::pore_pressure) : nullptr;
     const Bed<D> bed(particles, settings);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         std::array<double, D> v_i;
         for (std::size_t d = 0; d < D; ++d) v_i[d] = v[d][i] + time * a[d][i];
+        if (settings.balance && is_held<D>(v, a, i, settings.gravity)) v_i = {};
         if constexpr (!std::is_same_v<Law, Frictionless>) {
             const Column column{.depth = depth[i],
                                 .density = settings.density,
                                 .normal_stress = settings.density * bed.gravity(i) * depth[i],
+                                .pore_pressure = pore_pressure ? pore_pressure[i] : 0,
                                 .gravity = settings.gravity};
             const double before = bed.speed(i, v_i);
             const double kept = before > 0 ? law.speed_after(before, time, column) / before : 0;
@@ -108,11 +126,17 @@ void entrain(ParticleSet& particles, const Settings& settings, double time) {
         take_up<2>(particles, settings, time);
 }
 
-void relax_corrections(ParticleSet& particles, double time) {
-    double* correction = particles.data(field::depth_correction);
-    for (const double divergence : std::as_const(particles).own(field::divergence)) {
-        *correction = 1 + (*correction - 1) * std::exp(-std::abs(divergence) * time);
-        ++correction;
+void fade_balance(ParticleSet& particles, double time) {
+    const double* s = particles.data(field::smoothing_length);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        double speed2 = 0;
+        for (int axis = 0; axis < particles.dimension(); ++axis) {
+            const double v = particles.data(field::velocity, axis)[i];
+            speed2 += v * v;
+        }
+        const double left = std::exp(-std::sqrt(speed2) * time / s[i]);
+        for (int axis = 0; axis < particles.dimension(); ++axis)
+            particles.data(field::still_acceleration, axis)[i] *= left;
     }
 }
 

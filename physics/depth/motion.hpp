@@ -42,8 +42,9 @@ void predict(ParticleSet& particles, const Settings& settings, const BasalFricti
 /// momentum stays. O. Hungr, Can. Geotech. J. 32 (1995) 610; E_s is his growth rate.
 void entrain(ParticleSet& particles, const Settings& settings, double time);
 
-/// Relaxes depth_correction to 1 by the strain of a step: it belongs to the columns as they lay at the start.
-void relax_corrections(ParticleSet& particles, double time);
+/// Lets still_acceleration fade along the way, by the factor e in a smoothing length: it belongs to the
+/// columns as they lay over the bed at the start.
+void fade_balance(ParticleSet& particles, double time);
 
 /// Longest stable step over the own particles: dt = C s / (signal speed) and dt = C sqrt(s/|a|).
 sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings);

@@ -10,25 +10,26 @@
 /// Struct. 83 (2005) 1396.
 namespace talus::depth {
 
-/// Heights of the columns, H_i = sum_j V_j W(r_ij, s_i) with s_i = eta (V_i/H_i)^(1/D): one step of Newton's
-/// method from the present smoothing length into next_smoothing_length and column_height, which stays
-/// positive, and grad_h_factor; the divergence if the set has that field. Reads position, volume
+/// Heights of the columns, H_i = sum_j V_j W(r_ij, s_i), where s_i follows from how densely they stand,
+/// sum_j W(r_ij, s_i) = (eta/s_i)^D: one step of Newton's method from the present smoothing length into
+/// next_smoothing_length and column_height, which stays positive; grad_h_volume, P. F. Hopkins, Mon. Not. R.
+/// Astron. Soc. 428 (2013) 2840, eq. 12; the divergence if the set has that field. Reads position, volume
 /// (predicted_velocity) of partners.
 void height_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
 
 /// What follows from a column and the bed under it: takes over next_smoothing_length, sets depth, wave_speed,
-/// and those of bed_slope, apparent_gravity, pressure_factor and surface_level that the set has.
+/// and pressure_factor, and those of bed_slope and apparent_gravity that the set has.
 void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& settings);
 
-/// Acceleration by the pressure of the columns around, by settings.gradient, and by an artificial viscosity
-/// between approaching ones; signal_speed. `count` as of the passes of SPH. Reads position, volume,
-/// smoothing_length, predicted_velocity, depth, wave_speed of partners, and pressure_factor (conservative) or
-/// surface_level (balanced).
+/// Acceleration by the pressure of the columns around, the force of the potential energy sum V (pressure
+/// factor) H, and by an artificial viscosity between approaching ones; signal_speed. `count` as of the passes
+/// of SPH. Reads position, volume, smoothing_length, predicted_velocity, depth, wave_speed, pressure_factor
+/// and grad_h_volume of partners.
 void pressure_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                    sph::PassCount& count);
 
-/// Completes the acceleration by gravity on the slope, which the balanced gradient includes already, and by
-/// the metric of the bed's surface if the form is fitted to it.
+/// Completes the acceleration by gravity on the slope, by the metric of the bed's surface if the form is
+/// fitted to it, and by the still_acceleration if the set has that.
 void slide_on_bed(ParticleSet& particles, const Settings& settings);
 
 }  // namespace talus::depth

@@ -1,5 +1,4 @@
 #include "domain/depth_fields.hpp"
-#include "physics/depth/corrected_gradient.hpp"
 #include "physics/depth/kernel.hpp"
 #include "physics/depth/passes.hpp"
 #include "physics/sph/pair_records.hpp"
@@ -12,13 +11,11 @@ namespace {
 
 using sph::components;
 
-template <int D, Gradient gradient>
+template <int D>
 class PressurePass {
   public:
     PressurePass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings)
         : settings_(settings),
-          bed_slope_(particles.has(field::bed_slope) ? components<D>(particles, field::bed_slope)
-                                                     : std::array<const double*, D>{}),
           acceleration_(sph::components_to_write<D>(particles, field::acceleration)),
           signal_speed_(particles.data(field::signal_speed)),
           partners_(components<D>(particles, field::position), particles.data(field::smoothing_length),
@@ -30,8 +27,8 @@ class PressurePass {
         records_.copy(place_inverse_s, components<1>(particles, field::smoothing_length));
         records_.copy(place_depth, components<1>(particles, field::depth));
         records_.copy(place_wave_speed, components<1>(particles, field::wave_speed));
-        records_.copy(place_value,
-                      components<1>(particles, balanced ? field::surface_level : field::pressure_factor));
+        records_.copy(place_factor, components<1>(particles, field::pressure_factor));
+        records_.copy(place_grad_h, components<1>(particles, field::grad_h_volume));
         records_.fill_copies(finish);
     }
 
@@ -48,13 +45,11 @@ class PressurePass {
     }
 
   private:
-    static constexpr bool balanced = gradient == Gradient::balanced;
     static constexpr std::size_t place_position = 0, place_velocity = D, place_volume = 2 * D,
                                  place_inverse_s = place_volume + 1, place_depth = place_volume + 2,
-                                 place_wave_speed = place_volume + 3, place_value = place_volume + 4,
-                                 record_size = place_value + 1;
+                                 place_wave_speed = place_volume + 3, place_factor = place_volume + 4,
+                                 place_grad_h = place_volume + 5, record_size = place_volume + 6;
     using Values = std::array<Lanes, record_size>;
-    static constexpr std::size_t moment_count = static_cast<std::size_t>(sph::symmetric_count<D>);
 
     static constexpr auto finish = [](const sph::Neighbours&, auto& values) {
         values[place_inverse_s] = 1 / values[place_inverse_s];
@@ -63,8 +58,7 @@ class PressurePass {
     [[gnu::flatten]] void evaluate(std::uint32_t i) {
         const Values own = sph::broadcast(records_[i]);
         const std::span<const std::uint32_t> partners = partners_.index();
-        std::array<LaneSum, D> force{}, level{};
-        std::array<LaneSum, moment_count> moments{};
+        std::array<LaneSum, D> force{};
         Lanes fastest = own[place_wave_speed];
         for (std::size_t k = 0; k < partners.size(); k += lane_count) {
             const Values other = records_.gather(partners.data() + k);
@@ -82,75 +76,36 @@ class PressurePass {
             const Lanes viscosity = -settings_.viscosity * (mean_wave - 0.5 * closing) * closing /
                                     (own[place_depth] + other[place_depth]);
             fastest = max(fastest, mean_wave - closing);
-            const Lanes volume = select(first_lanes(partners.size() - k), other[place_volume], Lanes(0.0));
-            Lanes push = 0.5 * (own_slope + other_slope) * viscosity;
-            if constexpr (balanced) {
-                const Lanes weight = volume / other[place_depth] * own_slope;
-                const Lanes difference = weight * (other[place_value] - own[place_value]);
-                for (std::size_t d = 0; d < D; ++d) level[d].add(k, difference * r[d]);
-                add_moments(k, weight, r, moments);
-            } else {
-                push += own[place_value] * own_slope + other[place_value] * other_slope;
-            }
-            for (std::size_t d = 0; d < D; ++d) force[d].add(k, -volume * push * r[d]);
+            const Lanes volume = other[place_volume];
+            const Lanes of_own = own[place_factor] * (volume - own[place_grad_h]) * own_slope,
+                        of_other = other[place_factor] *
+                                   (volume - other[place_grad_h] * volume / own[place_volume]) * other_slope;
+            const Lanes push =
+                select(first_lanes(partners.size() - k),
+                       of_own + of_other + 0.5 * volume * (own_slope + other_slope) * viscosity, Lanes(0.0));
+            for (std::size_t d = 0; d < D; ++d) force[d].add(k, -push * r[d]);
         }
-        std::array<double, D> acceleration;
-        for (std::size_t d = 0; d < D; ++d) acceleration[d] = force[d].total();
-        if constexpr (balanced) add_level_gradient(i, level, moments, acceleration);
-        for (std::size_t d = 0; d < D; ++d) acceleration_[d][i] = acceleration[d];
+        for (std::size_t d = 0; d < D; ++d) acceleration_[d][i] = force[d].total();
         signal_speed_[i] = hmax(fastest);
-    }
-
-    static void add_moments(std::size_t k, const Lanes& weight, const sph::Vector<Lanes, D>& r,
-                            std::array<LaneSum, moment_count>& moments) {
-        for (int a = 0; a < D; ++a)
-            for (int b = a; b < D; ++b)
-                moments[static_cast<std::size_t>(sph::symmetric_index<D>(a, b))].add(
-                    k, -weight * r[static_cast<std::size_t>(a)] * r[static_cast<std::size_t>(b)]);
-    }
-
-    void add_level_gradient(std::uint32_t i, const std::array<LaneSum, D>& level,
-                            const std::array<LaneSum, moment_count>& moments,
-                            std::array<double, D>& acceleration) const {
-        sph::Vector<double, D> sum, slope;
-        sph::Symmetric<double, D> moment;
-        for (std::size_t d = 0; d < D; ++d) {
-            sum[d] = level[d].total();
-            slope[d] = bed_slope_[d] ? bed_slope_[d][i] : 0;
-        }
-        for (std::size_t c = 0; c < moment_count; ++c) moment[c] = moments[c].total();
-        const CorrectedGradient<D> corrected(sum, moment, slope);
-        for (std::size_t d = 0; d < D; ++d)
-            acceleration[d] -= settings_.gravity * (corrected.gradient[d] + corrected.lost[d]);
     }
 
     const Kernel<D> kernel_{};
     const Settings settings_;
-    std::array<const double*, D> bed_slope_;
     std::array<double*, D> acceleration_;
     double* signal_speed_;
     Partners<D> partners_;
     sph::PairRecords<record_size> records_;
 };
 
-template <int D, Gradient gradient>
+template <int D>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
          sph::PassCount& count) {
-    PressurePass<D, gradient> pass(particles, table, which, settings);
+    PressurePass<D> pass(particles, table, which, settings);
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
         const std::uint64_t pairs = pass.visit(cell, runs);
         count.pairs += pairs;
         count.work_of_cell[k] = static_cast<double>(pairs);
     });
-}
-
-template <int D>
-void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-         sph::PassCount& count) {
-    if (settings.gradient == Gradient::balanced)
-        run<D, Gradient::balanced>(particles, table, which, settings, count);
-    else
-        run<D, Gradient::conservative>(particles, table, which, settings, count);
 }
 
 }  // namespace

@@ -10,12 +10,6 @@ enum class Form : std::uint8_t {
     bed_fitted  ///< depths along the normal of the bed, particles move on its surface: steep slopes
 };
 
-/// How the gradient of the pressure is taken (docs/decisions/018).
-enum class Gradient : std::uint8_t {
-    conservative,  ///< from a potential energy, pair by pair: momentum on a plane is kept
-    balanced       ///< of the free surface, corrected: a lake at rest over any bed stays at rest
-};
-
 /// Coefficients of lateral earth pressure: S. B. Savage, K. Hutter, J. Fluid Mech. 199 (1989) 177.
 struct EarthPressure {
     double active;   ///< where the flow spreads [1]
@@ -25,7 +19,7 @@ struct EarthPressure {
 /// Choices and parameters of the depth-integrated model.
 struct Settings {
     Form form = Form::cartesian;
-    Gradient gradient = Gradient::conservative;
+    bool balance = false;                 ///< lakes released at a level stay at rest (docs/decisions/018)
     double gravity = 9.81;                ///< g [m/s2]
     double density = 1000;                ///< of the flow [kg/m3]
     double eta = 1.3;                     ///< smoothing length over (volume/height)^(1/D)
@@ -38,7 +32,6 @@ struct Settings {
 
     /// Range of the kernel in smoothing lengths.
     static constexpr double support() { return 2; }
-    bool needs_divergence() const { return gradient == Gradient::balanced || earth_pressure.has_value(); }
 };
 
 }  // namespace talus::depth

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "domain/depth_fields.hpp"
+#include "domain/pore_pressure_field.hpp"
 #include "io/checkpoint.hpp"
 #include "src/run/scene_checks.hpp"
 
@@ -16,6 +17,7 @@ DepthEvolution::DepthEvolution(const Communicator& comm, const Scene& scene, std
       setup_(read_depth_scene(comm, scene)),
       end_time_(until.value_or(setup_.output.end_time)) {
     check_snapshots(scene, setup_.output, end_time_);
+    if (setup_.results.frame.rows > 0) record_.emplace(setup_.results.frame, setup_.results.threshold);
 }
 
 std::vector<std::string> DepthEvolution::warnings() const {
@@ -45,11 +47,38 @@ ReadCheckpoint DepthEvolution::read(const std::filesystem::path& what,
     const auto began = std::chrono::steady_clock::now();
     ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
     ParticleSet particles = empty_columns(setup_.simulation);
-    found.state = read_checkpoint(comm_, found.file, {&particles});
+    ParticleSet cells = FlowRecord::empty_set();
+    std::vector<ParticleSet*> sets{&particles};
+    if (record_) sets.push_back(&cells);
+    found.state = read_checkpoint(comm_, found.file, sets);
+    if (record_) {
+        record_->restore(cells);
+        record_->share(comm_);
+    }
     simulation_.emplace(comm_, setup_.simulation, std::move(particles));
     check_box();
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return found;
+}
+
+void DepthEvolution::start() {
+    simulation_->start();
+    if (record_) add_columns(*record_, *simulation_);
+}
+
+void DepthEvolution::step() {
+    simulation_->step();
+    if (record_) add_columns(*record_, *simulation_);
+}
+
+void DepthEvolution::save(const WriteSets& write) {
+    if (!record_) return write({&simulation_->particles()});
+    const ParticleSet cells = record_->save(comm_);
+    write({&simulation_->particles(), &cells});
+}
+
+std::string DepthEvolution::analyse(const std::filesystem::path& folder, const RunState&) const {
+    return record_ ? write_results(*simulation_, *record_, setup_.results, folder) : "";
 }
 
 std::vector<std::string> DepthEvolution::news() {
@@ -62,39 +91,51 @@ std::vector<SnapshotField> DepthEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
     for (const FieldInfo* info :
          std::initializer_list<const FieldInfo*>{&field::velocity, &field::depth, &field::volume,
-                                                 &field::smoothing_length, &field::surface_level})
+                                                 &field::smoothing_length, &field::pore_pressure})
         if (simulation_->particles().has(*info)) fields.push_back({.field = info});
     return fields;
 }
 
 std::vector<CsvColumn> DepthEvolution::diagnostics_columns() const {
-    return {{"time", "s"},
-            {"time_step", "s"},
-            {"volume", "m3"},
-            {"kinetic_energy", "J"},
-            {"potential_energy", "J"},
-            {"momentum_x", "kg m s-1"},
-            {"momentum_y", "kg m s-1"},
-            {"centre_x", "m"},
-            {"centre_y", "m"},
-            {"least_x", "m"},
-            {"greatest_x", "m"},
-            {"least_y", "m"},
-            {"greatest_y", "m"},
-            {"greatest_speed", "m s-1"},
-            {"greatest_depth", "m"},
-            {"stopped", "1"},
-            {"outflow_particles", "1"},
-            {"outflow_volume", "m3"}};
+    std::vector<CsvColumn> columns{{"time", "s"},
+                                   {"time_step", "s"},
+                                   {"volume", "m3"},
+                                   {"kinetic_energy", "J"},
+                                   {"potential_energy", "J"},
+                                   {"momentum_x", "kg m s-1"},
+                                   {"momentum_y", "kg m s-1"},
+                                   {"centre_x", "m"},
+                                   {"centre_y", "m"},
+                                   {"least_x", "m"},
+                                   {"greatest_x", "m"},
+                                   {"least_y", "m"},
+                                   {"greatest_y", "m"},
+                                   {"greatest_speed", "m s-1"},
+                                   {"greatest_depth", "m"},
+                                   {"stopped", "1"},
+                                   {"outflow_particles", "1"},
+                                   {"outflow_volume", "m3"}};
+    for (const Gauge& gauge : setup_.gauges) {
+        columns.push_back({"depth_" + gauge.name, "m"});
+        columns.push_back({"level_" + gauge.name, "m"});
+    }
+    return columns;
 }
 
 Diagnostics DepthEvolution::diagnostics() {
     const DepthTotals t = simulation_->totals();
-    return {{simulation_->time(), simulation_->time_step(), t.volume, t.kinetic_energy, t.potential_energy,
-             t.momentum[0], t.momentum[1], t.centre[0], t.centre[1], t.least_place[0], t.greatest_place[0],
-             t.least_place[1], t.greatest_place[1], t.greatest_speed, t.greatest_depth, t.stopped,
-             static_cast<double>(simulation_->outflow().count()), simulation_->outflow().volume()},
-            0};
+    Diagnostics found{
+        {simulation_->time(), simulation_->time_step(), t.volume, t.kinetic_energy, t.potential_energy,
+         t.momentum[0], t.momentum[1], t.centre[0], t.centre[1], t.least_place[0], t.greatest_place[0],
+         t.least_place[1], t.greatest_place[1], t.greatest_speed, t.greatest_depth, t.stopped,
+         static_cast<double>(simulation_->outflow().count()), simulation_->outflow().volume()},
+        0};
+    if (setup_.gauges.empty()) return found;
+    for (const GaugeReading& reading : read_gauges(*simulation_, setup_.gauges)) {
+        found.row.push_back(reading.depth);
+        found.row.push_back(reading.level);
+    }
+    return found;
 }
 
 std::string DepthEvolution::summary() const {

@@ -19,11 +19,11 @@ class DepthEvolution : public Evolution {
     void create(const std::function<void()>& check_stop) override;
     ReadCheckpoint read(const std::filesystem::path& what,
                         const std::filesystem::path& output_folder) override;
-    void start() override { simulation_->start(); }
+    void start() override;
     void resume(const RunState& state) override {
         simulation_->resume(state.time, state.time_step, state.step, state.numbers);
     }
-    void step() override { simulation_->step(); }
+    void step() override;
     std::vector<std::string> news() override;
     double time() const override { return simulation_->time(); }
     double time_step() const override { return simulation_->time_step(); }
@@ -36,12 +36,13 @@ class DepthEvolution : public Evolution {
     void reset_counters() override { simulation_->reset_counters(); }
     double work() const override { return simulation_->work(); }
     void describe(RunState& state) const override { simulation_->save_numbers(state.numbers); }
-    void save(const WriteSets& write) override { write({&simulation_->particles()}); }
+    void save(const WriteSets& write) override;
     std::vector<SnapshotField> snapshot_fields() const override;
     std::vector<CsvColumn> diagnostics_columns() const override;
     Diagnostics diagnostics() override;
     std::string summary() const override;
     std::string performance() const override { return {}; }
+    std::string analyse(const std::filesystem::path& folder, const RunState& state) const override;
 
     const DepthScene& setup() const { return setup_; }
     const DepthSimulation& simulation() const { return *simulation_; }
@@ -54,6 +55,7 @@ class DepthEvolution : public Evolution {
     DepthScene setup_;
     double end_time_;  ///< [s]
     std::optional<DepthSimulation> simulation_;
+    std::optional<FlowRecord> record_;  ///< if the scene wants rasters
 };
 
 }  // namespace talus

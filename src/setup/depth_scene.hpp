@@ -4,6 +4,7 @@
 
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
+#include "src/depth/flow_map.hpp"
 #include "src/depth_simulation.hpp"
 #include "src/setup/release.hpp"
 #include "src/setup/scene_setup.hpp"
@@ -16,6 +17,8 @@ struct DepthScene {
     DepthSetup simulation;
     std::vector<Release> releases;
     OutputPlan output;
+    ResultsPlan results;
+    std::vector<Gauge> gauges;
 };
 
 /// Whether a scene describes a depth-integrated flow.

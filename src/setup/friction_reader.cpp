@@ -77,4 +77,16 @@ double friction_coefficient(const depth::BasalFriction& friction) {
         friction);
 }
 
+std::optional<PorePressure> read_pore_pressure(const Section& table) {
+    if (!table.exists()) return {};
+    PorePressure model{};
+    model.law.coefficient = table.number("consolidation", "m2 s-1", {}, not_negative);
+    model.points = static_cast<int>(table.integer("points", 1, 1, 1000));
+    model.ratio = table.number("ratio", "1", 1.0, {0, 1});
+    model.loaded_share = table.number("loaded_share", "1", 1.0, {0, 1});
+    if (model.points > 1 && table.choice("base", {"impermeable", "drained"}, "impermeable") == "drained")
+        model.law.base = depth::Base::drained;
+    return model;
+}
+
 }  // namespace talus

@@ -1,13 +1,19 @@
 #pragma once
+#include <optional>
+
 #include "io/scene.hpp"
 #include "physics/depth/basal_friction.hpp"
+#include "src/depth_simulation.hpp"
 
 namespace talus {
 
-/// The table [friction]: resistance of the bed to a depth-integrated flow. Faults are recorded in the scene.
+/// The law of the bed that a [friction] table names. Faults are recorded in the scene.
 depth::BasalFriction read_basal_friction(const Section& table);
 
-/// Friction coefficient of a law that has one, else 0.
+/// The coefficient of friction of a law; 0 if it has none.
 double friction_coefficient(const depth::BasalFriction& friction);
+
+/// What a [pore_pressure] table says, nothing if there is none. Faults are recorded in the scene.
+std::optional<PorePressure> read_pore_pressure(const Section& table);
 
 }  // namespace talus

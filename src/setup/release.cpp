@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "physics/depth/kernel.hpp"
 #include "physics/depth/motion.hpp"
 
 namespace talus {
@@ -24,11 +23,27 @@ double relative_distance2(const BodyShape& shape, const Point& place, int dimens
     return sum;
 }
 
+BoxShape bounds_of(const Release& release, int dimension) {
+    if (release.area.rings.empty()) return bounds(release.shape, dimension);
+    const std::array<double, 2> lower = release.area.lower(), upper = release.area.upper();
+    return {{lower[0], lower[1], 0}, {upper[0], upper[1], 0}};
+}
+
+double depth_in(const TerrainGrid& raster, const Point& place) {
+    const long column = std::lround((place[0] - raster.origin[0]) / raster.spacing[0]),
+               row = std::lround((place[1] - raster.origin[1]) / raster.spacing[1]);
+    if (column < 0 || row < 0 || column >= static_cast<long>(raster.columns) ||
+        row >= static_cast<long>(raster.rows))
+        return 0;
+    const double depth = raster.at(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
+    return depth > 0 ? depth : 0;  // NaN too
+}
+
 class Lattice {
   public:
     Lattice(const Release& release, const Terrain& terrain, const depth::Settings& settings, int dimension)
         : release_(release), terrain_(terrain), settings_(settings), dimension_(dimension) {
-        const BoxShape around = bounds(release.shape, dimension);
+        const BoxShape around = bounds_of(release, dimension);
         for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
             const double length = around.upper[a] - around.lower[a];
             count_[a] = std::max(1L, std::lround(length / release.spacing));
@@ -40,7 +55,10 @@ class Lattice {
 
     using Site = std::array<long, 2>;
     const Site& count() const { return count_; }
-    bool is_wet(const Point& place) const { return contains(release_.shape, place, dimension_); }
+    bool contains(const Point& place) const {
+        if (!release_.area.rings.empty()) return release_.area.contains(place[0], place[1]);
+        return talus::contains(release_.shape, place, dimension_);
+    }
     Point place(const Site& site) const {
         Point place{};
         for (std::size_t a = 0; a < static_cast<std::size_t>(dimension_); ++a)
@@ -53,6 +71,7 @@ class Lattice {
             const double ground = terrain_.elevation(place[0], place[1]);
             return *release_.level > ground ? *release_.level - ground : 0;
         }
+        if (release_.depth_raster) return depth_in(*release_.depth_raster, place);
         if (!release_.parabolic) return release_.depth;
         return release_.depth * std::max(0.0, 1 - relative_distance2(release_.shape, place, dimension_));
     }
@@ -61,23 +80,6 @@ class Lattice {
         return depth * area_ / depth::Tilt(terrain_.slope(place[0], place[1])).cosine;
     }
     double smoothing_length() const { return settings_.eta * std::pow(area_, 1.0 / dimension_); }
-
-    /// The kernel sum at a site, of columns all around.
-    template <int D>
-    double height(const Site& site, double smoothing_length) const {
-        const depth::Kernel<D> kernel;
-        const double range = depth::Settings::support() * smoothing_length;
-        const long x_range = static_cast<long>(range / spacing_[0]),
-                   y_range = D == 2 ? static_cast<long>(range / spacing_[1]) : 0;
-        double sum = 0;
-        for (long y = -y_range; y <= y_range; ++y)
-            for (long x = -x_range; x <= x_range; ++x) {
-                const Point other = place({site[0] + x, site[1] + y});
-                const Point r = minus(other, place(site));
-                sum += area_ * depth(other) * kernel.value(dot(r, r), 1 / smoothing_length);
-            }
-        return depth::lattice_factor<D>(settings_) * sum;
-    }
 
   private:
     const Release& release_;
@@ -89,55 +91,45 @@ class Lattice {
     double area_;
 };
 
-/// Solves s = eta (V/H(s))^(1/D) at a site, and sets the column's smoothing length and correction by it.
-template <int D>
-void find_correction(const Lattice& lattice, const Lattice::Site& site, double eta, ReleasedColumn& column) {
-    constexpr int most_rounds = 100;
-    double s = column.smoothing_length, height = 0;
-    for (int round = 0; round < most_rounds; ++round) {
-        height = lattice.height<D>(site, s);
-        const double next = 0.5 * (s + eta * std::pow(column.volume / height, 1.0 / D));
-        const bool found = std::abs(next / s - 1) < 1e-15;
-        s = next;
-        if (found) break;
-    }
-    column.smoothing_length = s;
-    column.correction = column.depth / height;
+/// Sites beyond the bounds that a release goes on in: what reaches the particles at its edge, and what
+/// reaches that.
+constexpr long margin = 8;
+
+bool is_in(const Box& box, const Point& place) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(box.dimension); ++a)
+        if (box.boundary[a] != Boundary::open && (place[a] < box.lower[a] || place[a] > box.upper[a]))
+            return false;
+    return true;
 }
 
 }  // namespace
 
-std::vector<ReleasedColumn> columns_of(const Release& release, const Terrain& terrain,
-                                       const depth::Settings& settings, int dimension,
-                                       std::optional<Point>& unknown) {
+ReleasedColumns columns_of(const Release& release, const Terrain& terrain, const depth::Settings& settings,
+                           const Box& box) {
     constexpr double least_share = 1e-3;
-    const Lattice lattice(release, terrain, settings, dimension);
-    std::vector<ReleasedColumn> columns;
-    std::vector<Lattice::Site> sites;
+    const Lattice lattice(release, terrain, settings, box.dimension);
+    const bool goes_on = settings.balance && release.level;
+    const long beyond = goes_on ? margin : 0, beyond_y = box.dimension == 2 ? beyond : 0;
+    ReleasedColumns columns;
     double greatest = 0;
-    for (long y = 0; y < lattice.count()[1]; ++y)
-        for (long x = 0; x < lattice.count()[0]; ++x) {
+    for (long y = -beyond_y; y < lattice.count()[1] + beyond_y; ++y)
+        for (long x = -beyond; x < lattice.count()[0] + beyond; ++x) {
             const Point place = lattice.place({x, y});
-            if (!lattice.is_wet(place)) continue;
-            if (!release.level && !unknown && !terrain.contains(place[0], place[1])) unknown = place;
+            const bool is_released = lattice.contains(place);
+            if (!is_released && !(goes_on && is_in(box, place))) continue;
+            if (!release.level && !columns.unknown && !terrain.contains(place[0], place[1]))
+                columns.unknown = place;
             const double depth = lattice.depth(place);
-            greatest = std::max(greatest, depth);
-            columns.push_back({place, depth, lattice.volume(place, depth), lattice.smoothing_length(), 1});
-            sites.push_back({x, y});
+            const ReleasedColumn column{place, depth, lattice.volume(place, depth),
+                                        lattice.smoothing_length()};
+            (is_released ? columns.released : columns.beyond).push_back(column);
+            if (is_released) greatest = std::max(greatest, depth);
         }
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-        if (!(columns[k].depth > least_share * greatest)) continue;
-        columns[kept] = columns[k];
-        if (settings.gradient == depth::Gradient::balanced) {
-            if (dimension == 1)
-                find_correction<1>(lattice, sites[k], settings.eta, columns[kept]);
-            else
-                find_correction<2>(lattice, sites[k], settings.eta, columns[kept]);
-        }
-        ++kept;
-    }
-    columns.resize(kept);
+    const auto is_dry = [&](const ReleasedColumn& column) {
+        return !(column.depth > least_share * greatest);
+    };
+    std::erase_if(columns.released, is_dry);
+    std::erase_if(columns.beyond, is_dry);
     return columns;
 }
 

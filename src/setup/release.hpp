@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "domain/particles.hpp"
+#include "domain/box.hpp"
+#include "domain/polygon.hpp"
 #include "domain/terrain.hpp"
 #include "physics/depth/settings.hpp"
 #include "src/setup/shapes.hpp"
@@ -15,6 +17,9 @@ namespace talus {
 struct Release {
     std::string name;
     BodyShape shape;
+    Polygon area;  ///< in place of a shape, if it has rings
+    std::shared_ptr<const TerrainGrid>
+        depth_raster{};             ///< in place of a depth: of the nearest cell, NaN is dry
     double spacing = 0;             ///< wanted distance of particles in plan [m]
     double depth = 0;               ///< even, or in the middle of a parabolic one [m]
     bool parabolic = false;         ///< falls to zero at the edge of a ball or ellipsoid
@@ -28,14 +33,19 @@ struct ReleasedColumn {
     double depth;             ///< as the model's form means it [m]
     double volume;            ///< [m3]
     double smoothing_length;  ///< [m]
-    double correction;  ///< depth over the kernel sum of the columns that continue the release all around
+};
+
+struct ReleasedColumns {
+    std::vector<ReleasedColumn> released;
+    std::vector<ReleasedColumn>
+        beyond;  ///< where a level goes on around the region, for a moment, if it is balanced
+    std::optional<Point> unknown;  ///< the first place where a release would be but the terrain is not known
 };
 
 /// The columns of a release, on a lattice of squares that fits its bounds, in order of y, then x. Those where
-/// it is less than a thousandth of its greatest depth are left out. Places where the terrain is not known are
-/// dry for a level, and given to `unknown` otherwise, the first one only.
-std::vector<ReleasedColumn> columns_of(const Release& release, const Terrain& terrain,
-                                       const depth::Settings& settings, int dimension,
-                                       std::optional<Point>& unknown);
+/// it is less than a thousandth of its greatest depth are left out. Where the terrain is not known, levels
+/// are dry.
+ReleasedColumns columns_of(const Release& release, const Terrain& terrain, const depth::Settings& settings,
+                           const Box& box);
 
 }  // namespace talus

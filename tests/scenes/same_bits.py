@@ -1,6 +1,6 @@
 """Every scene of runs/ gives the same bits on any number of ranks, for any map of cells to ranks, and across a restart
 on another number of ranks: `talus hash` of the state after some steps must not change, nor must what the analysis finds
-of it, at the end of the run or from its checkpoint. The collision of asteroids is followed to the end of its quick
+of it, at the end of the run or from its checkpoint, nor the rasters it leaves. The collision of asteroids is followed to the end of its quick
 version, and stopped and restarted while its fragments fall together.
 
 usage: same_bits.py PROGRAM MPIRUN RUNS_FOLDER [SCENE ...]
@@ -79,7 +79,24 @@ def findings(out):
     return {name: (out / name).read_bytes() for name in names if (out / name).exists()}
 
 
+def rasters(out):
+    """What a depth-integrated run leaves on the map."""
+    return {path.name: path.read_bytes() for path in sorted(out.glob("results/*"))}
+
+
+def missing_data(scene):
+    """A file of maps that the scene names and this machine has not, or None."""
+    tables = tomllib.loads((scene / "scene.toml").read_text())
+    releases = tables.get("release", [])
+    named = [tables.get("terrain", {}).get("file")] + [r.get(key) for r in releases for key in ("areas", "depth_raster")]
+    folders = [scene, *map(pathlib.Path, filter(None, [os.environ.get("TALUS_DATA")]))]
+    return next((name for name in filter(None, named) if not any((f / name).exists() for f in folders)), None)
+
+
 def check(runner, scene):
+    if missing := missing_data(scene):
+        print(f"{scene.name}: skipped, needs {missing} in the folder TALUS_DATA or its own")
+        return True
     steps, stop = steps_and_stop(scene)
     first = runner.run(scene, steps, 0, "metis")
     reference, found_first = runner.hash(first), findings(first)
@@ -93,6 +110,8 @@ def check(runner, scene):
             wrong.append(f"{ranks} ranks, {partition}: {found}")
         if findings(out) != found_first:
             wrong.append(f"{ranks} ranks, {partition}: another analysis")
+        if rasters(out) != rasters(first):
+            wrong.append(f"{ranks} ranks, {partition}: other rasters")
     for ranks in (1, 3) if found_first else ():
         for name in found_first:
             (first / name).unlink()
@@ -103,7 +122,7 @@ def check(runner, scene):
         out = runner.run(scene, stop, before, partition)
         runner.run(scene, steps, after, "metis", out, restart=True)
         found = runner.hash(out)
-        if found != reference or findings(out) != found_first:
+        if found != reference or findings(out) != found_first or rasters(out) != rasters(first):
             wrong.append(f"stopped at step {stop} on {before} ranks, restarted on {after}: {found}")
     print(f"{scene.name}: {'same bits, ' + reference if not wrong else 'DIFFERS from ' + reference}")
     for line in wrong:

@@ -39,7 +39,7 @@ double terzaghi_error(std::size_t points, int steps, double time_factor, Base ba
     const std::vector<double> depths{depth};
     const double time_step = time_factor * 9 / c_v / steps;
     for (int step = 0; step < steps; ++step)
-        consolidate_profile({c_v, 9000, base}, {depths, depths}, time_step, profiles.pointers);
+        consolidate_profile({c_v, base}, {depths, depths, depths}, time_step, profiles.pointers);
     double error = 0;
     for (std::size_t k = 0; k < points; ++k) {
         const double zeta = static_cast<double>(k) / static_cast<double>(points);
@@ -64,7 +64,7 @@ TEST(Consolidation, AnyTimeStepIsStable) {
     for (const double time_step : {1e-6, 1.0, 1e4, 1e12}) {
         Profiles profiles(15, 3, 1000);
         for (int step = 0; step < 5; ++step)
-            consolidate_profile({2e-4, 9000}, {depths, depths}, time_step, profiles.pointers);
+            consolidate_profile({2e-4}, {depths, depths, depths}, time_step, profiles.pointers);
         for (std::size_t particle = 0; particle < 3; ++particle)
             for (std::size_t k = 0; k < 15; ++k) {
                 EXPECT_GE(profiles.at(k, particle), 0);
@@ -79,23 +79,23 @@ TEST(Consolidation, AnyTimeStepIsStable) {
 /// Undrained, the weight of a column and its pore pressure change together, however the depth moves.
 TEST(Consolidation, LiquefiedColumnsStaySoWhileTheirDepthChanges) {
     constexpr std::size_t points = 12, particles = 100;  // more than one block
+    const std::vector<double> depths(particles, 2.0);
     std::vector<double> before(particles), after(particles);
-    for (std::size_t i = 0; i < particles; ++i) before[i] = 0.1 + 0.3 * static_cast<double>(i);
+    for (std::size_t i = 0; i < particles; ++i) before[i] = 900 + 2700 * static_cast<double>(i);
     Profiles profiles(points, particles), mode(1, particles);
-    set_pore_pressure(1, 9000, before, profiles.pointers);
-    set_pore_pressure(1, 9000, before, mode.pointers);
+    set_pore_pressure(1, before, profiles.pointers);
+    set_pore_pressure(1, before, mode.pointers);
     for (int step = 1; step <= 50; ++step) {
         for (std::size_t i = 0; i < particles; ++i)
             after[i] = before[i] * (1 + 0.2 * std::sin(0.3 * step + static_cast<double>(i)));
-        consolidate_profile({0, 9000}, {before, after}, 0.1, profiles.pointers);
-        consolidate_first_mode({0, 9000}, {before, after}, 0.1, mode.values[0]);
+        consolidate_profile({0}, {depths, before, after}, 0.1, profiles.pointers);
+        consolidate_first_mode({0}, {depths, before, after}, 0.1, mode.values[0]);
         before = after;
     }
     for (std::size_t i = 0; i < particles; ++i) {
-        EXPECT_NEAR(mode.at(0, i) / (9000 * after[i]), 1, 1e-12);
+        EXPECT_NEAR(mode.at(0, i) / after[i], 1, 1e-12);
         for (std::size_t k = 0; k < points; ++k)
-            EXPECT_NEAR(profiles.at(k, i) / (9000 * after[i] * (1 - static_cast<double>(k) / points)), 1,
-                        1e-11)
+            EXPECT_NEAR(profiles.at(k, i) / (after[i] * (1 - static_cast<double>(k) / points)), 1, 1e-11)
                 << i << ' ' << k;
     }
 }
@@ -109,20 +109,20 @@ TEST(Consolidation, FirstModeDecaysAsTheProfileDoes) {
     const std::vector<double> depths{2.5};
     const double time = 0.4 * 2.5 * 2.5 / 2e-4;
     for (int step = 0; step < 2000; ++step)
-        consolidate_profile({2e-4, 9000}, {depths, depths}, time / 2000, profiles.pointers);
-    consolidate_first_mode({2e-4, 9000}, {depths, depths}, time, mode.values[0]);
+        consolidate_profile({2e-4}, {depths, depths, depths}, time / 2000, profiles.pointers);
+    consolidate_first_mode({2e-4}, {depths, depths, depths}, time, mode.values[0]);
     EXPECT_NEAR(mode.at(0), 5000 * std::exp(-std::numbers::pi * std::numbers::pi * 0.1), 1e-9);
     EXPECT_NEAR(profiles.at(0) / mode.at(0), 1, 2e-3);
 }
 
 TEST(Consolidation, AThinningColumnHasNoSuction) {
-    const std::vector<double> thick{10}, thin{1};
+    const std::vector<double> depth{1}, heavy{9e4}, light{9e3};
     Profiles profiles(8, 1), mode(1, 1);
-    set_pore_pressure(0.3, 9000, thick, profiles.pointers);
-    set_pore_pressure(0.3, 9000, thick, mode.pointers);
-    EXPECT_DOUBLE_EQ(profiles.at(2), 0.3 * 9000 * 10 * 0.75);
-    consolidate_profile({2e-4, 9000}, {thick, thin}, 0.1, profiles.pointers);
-    consolidate_first_mode({2e-4, 9000}, {thick, thin}, 0.1, mode.values[0]);
+    set_pore_pressure(0.3, heavy, profiles.pointers);
+    set_pore_pressure(0.3, heavy, mode.pointers);
+    EXPECT_DOUBLE_EQ(profiles.at(2), 0.3 * 9e4 * 0.75);
+    consolidate_profile({2e-4}, {depth, heavy, light}, 0.1, profiles.pointers);
+    consolidate_first_mode({2e-4}, {depth, heavy, light}, 0.1, mode.values[0]);
     for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(profiles.at(k), 0);
     EXPECT_EQ(mode.at(0), 0);
 }
@@ -130,7 +130,7 @@ TEST(Consolidation, AThinningColumnHasNoSuction) {
 TEST(Consolidation, ADrainedBaseBearsNoExcess) {
     const std::vector<double> depths{2};
     Profiles profiles(10, 1, 1000);
-    consolidate_profile({2e-4, 9000, Base::drained}, {depths, depths}, 10, profiles.pointers);
+    consolidate_profile({2e-4, Base::drained}, {depths, depths, depths}, 10, profiles.pointers);
     EXPECT_EQ(profiles.at(0), 0);
     EXPECT_GT(profiles.at(5), 900);
 }

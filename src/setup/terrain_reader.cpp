@@ -1,0 +1,96 @@
+#include "src/setup/terrain_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "io/raster.hpp"
+#include "src/setup/shape_reader.hpp"
+
+namespace talus {
+
+namespace {
+
+/// A plane: its elevation at the origin and where it falls to.
+std::shared_ptr<const Terrain> read_plane(const Section& table, int dimension) {
+    const double elevation = table.number("elevation", "m", 0.0);
+    const double dip = table.number("dip", "rad", 0.0, {0});
+    if (dip >= std::numbers::pi / 2) {
+        table.error("dip", fmt::format("is {:.4g} degrees; allowed: below 90", dip * 180 / std::numbers::pi));
+        return std::make_shared<Terrain>(0.0, std::array<double, 2>{});
+    }
+    const double azimuth = dimension == 2 ? table.number("dip_direction", "rad", 0.0) : 0;
+    const double steepness = std::tan(dip);
+    return std::make_shared<Terrain>(
+        elevation, std::array<double, 2>{-steepness * std::cos(azimuth),
+                                         azimuth == 0 ? 0 : -steepness * std::sin(azimuth)});
+}
+
+double linear(const std::vector<double>& profile, double x) {
+    std::size_t k = 2;
+    while (k + 2 < profile.size() && profile[k] < x) k += 2;
+    const double share = (x - profile[k - 2]) / (profile[k] - profile[k - 2]);
+    return profile[k - 1] + share * (profile[k + 1] - profile[k - 1]);
+}
+
+/// A ground whose elevation changes along x only, by straight lines that the interpolation between cells
+/// rounds off.
+SceneTerrain read_profile(const Section& table) {
+    SceneTerrain terrain{std::make_shared<Terrain>(0.0, std::array<double, 2>{}), {}, "", ""};
+    const std::vector<double> profile = table.numbers("profile", "m", 0),
+                              width = table.numbers("width", "m", 2);
+    const double cell = table.number("cell", "m", {}, {0, std::numeric_limits<double>::infinity(), true});
+    bool grows = profile.size() >= 4 && profile.size() % 2 == 0;
+    for (std::size_t k = 2; grows && k < profile.size(); k += 2) grows = profile[k - 2] < profile[k];
+    if (!grows) table.error("profile", "allowed: x and z of at least two points in turn, x growing");
+    if (width.size() == 2 && !(width[0] < width[1]))
+        table.error("width", "allowed: least y, then greatest y");
+    if (!grows || width.size() != 2 || !(width[0] < width[1])) return terrain;
+    const auto points = [&](double length) {
+        return std::max<std::size_t>(2, static_cast<std::size_t>(length / cell) + 1);
+    };
+    TerrainGrid& frame = terrain.frame;
+    frame.origin = {profile[0], width[0]};
+    frame.spacing = {cell, cell};
+    frame.columns = points(profile[profile.size() - 2] - profile[0]);
+    frame.rows = points(width[1] - width[0]);
+    TerrainGrid grid = frame;
+    for (std::size_t row = 0; row < frame.rows; ++row)
+        for (std::size_t column = 0; column < frame.columns; ++column)
+            grid.elevations.push_back(linear(profile, profile[0] + cell * static_cast<double>(column)));
+    terrain.ground = std::make_shared<Terrain>(std::move(grid));
+    return terrain;
+}
+
+}  // namespace
+
+SceneTerrain read_terrain(const Communicator& comm, const Scene& scene, const Section& table, int dimension) {
+    if (table.has("profile")) return read_profile(table);
+    if (!table.has("file")) return {read_plane(table, dimension), {}, "", ""};
+    if (dimension != 2) {
+        table.error("file", "a raster needs dimension = 2");
+        return {std::make_shared<Terrain>(0.0, std::array<double, 2>{}), {}, "", ""};
+    }
+    SceneTerrain terrain;
+    terrain.file = find_file(comm, scene, table.text("file"));
+    Raster raster = read_raster(comm, terrain.file);
+    terrain.reference = raster.reference;
+    terrain.frame = {.origin = raster.grid.origin,
+                     .spacing = raster.grid.spacing,
+                     .columns = raster.grid.columns,
+                     .rows = raster.grid.rows,
+                     .elevations = {}};
+    terrain.ground = std::make_shared<Terrain>(std::move(raster.grid));
+    return terrain;
+}
+
+void check_reference(const Communicator& comm, const SceneTerrain& terrain, const Section& table,
+                     std::string_view key, const std::string& file, const std::string& reference) {
+    if (!is_same_reference(comm, terrain.reference, reference))
+        table.error(
+            key, fmt::format("{} has another coordinate reference than the terrain {}; bring both into one",
+                             file, terrain.file));
+}
+
+}  // namespace talus
