@@ -20,18 +20,21 @@ Cone cone(ConeMatch match, double cohesion, double friction_angle, double dilati
             .dilation = 6 * flow / (root3 * (3 + sign * flow))};
 }
 
-Returned returned(const DruckerPrager& model, const Elasticity& elastic, const Invariants& trial, double strain) {
+Returned returned(const DruckerPrager& model, const Elasticity& elastic, const Invariants& trial,
+                  double strain) {
     const Cone cone = model.cone_at(strain);
-    const double apex = cone.friction > 0 ? cone.cohesion / cone.friction : std::numeric_limits<double>::infinity();
+    const double apex =
+        cone.friction > 0 ? cone.cohesion / cone.friction : std::numeric_limits<double>::infinity();
     const double least = -std::min(model.tensile_strength, apex);  // pressure
     const double K = elastic.bulk_modulus, G = elastic.shear_modulus;
+    const double tangent = K + trial.pressure;  // dp per volume strain
     Returned result{.state = trial};
     Invariants& now = result.state;
     const double excess = trial.shear - cone.cohesion - cone.friction * trial.pressure;
     if (excess > 0) {
-        const double flow = excess / (G + K * cone.friction * cone.dilation);
+        const double flow = excess / (G + tangent * cone.friction * cone.dilation);
         const double lambda = std::min(flow, trial.shear / G);  // no farther than to the axis
-        now = {trial.pressure + K * cone.dilation * lambda, std::max(0.0, trial.shear - G * lambda)};
+        now = {trial.pressure + tangent * cone.dilation * lambda, std::max(0.0, trial.shear - G * lambda)};
     }
     result.volume_strain = std::log((K + now.pressure) / (K + trial.pressure));
     if (now.pressure < least) {
@@ -42,7 +45,8 @@ Returned returned(const DruckerPrager& model, const Elasticity& elastic, const I
     return result;
 }
 
-Returned returned(const GranularFlow& model, const Elasticity& elastic, const Invariants& trial, double elapsed) {
+Returned returned(const GranularFlow& model, const Elasticity& elastic, const Invariants& trial,
+                  double elapsed) {
     const double K = elastic.bulk_modulus;
     if (!(trial.pressure > 0)) return {.state = {0, 0}, .gap = std::log(K / (K + trial.pressure))};
     const double p = trial.pressure, slow = model.friction_static * p, fast = model.friction_limit * p;
@@ -88,9 +92,9 @@ void return_all(const Model& model, const Elasticity& elastic, const PlasticStat
 
 }  // namespace
 
-void return_stress(const Plasticity& model, const Elasticity& elastic, const PlasticState& state, double elapsed,
-                   bool keep_strains, std::span<double> pressure, std::span<const std::uint8_t> body,
-                   std::uint8_t which) {
+void return_stress(const Plasticity& model, const Elasticity& elastic, const PlasticState& state,
+                   double elapsed, bool keep_strains, std::span<double> pressure,
+                   std::span<const std::uint8_t> body, std::uint8_t which) {
     std::visit(
         [&](const auto& of) {
             if (state.stress.dimension == 1)

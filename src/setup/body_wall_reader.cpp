@@ -21,7 +21,8 @@ std::optional<sph::Wall> read_body_wall(const Section& body, int dimension) {
         if (body.has(key)) body.error(key, "does not go with wall: [body.motion] says how a wall moves");
     wall.motion = read_motion(body.section("motion"), dimension);
     if (wall.motion.angular_velocity != 0 && wall.slip == sph::WallSlip::free_slip)
-        body.section("motion").error("angular_velocity", "a wall that slips keeps its normal: it cannot turn");
+        body.section("motion").error("angular_velocity",
+                                     "a wall that slips keeps its normal: it cannot turn");
     return wall;
 }
 

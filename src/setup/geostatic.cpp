@@ -32,7 +32,8 @@ std::optional<GeostaticStart> read_geostatic(const Section& body, const Material
     return start;
 }
 
-void put_geostatic(ParticleSet& particles, std::size_t i, const GeostaticStart& start, const Material& material) {
+void put_geostatic(ParticleSet& particles, std::size_t i, const GeostaticStart& start,
+                   const Material& material) {
     const int dimension = particles.dimension();
     double height = 0;
     for (int a = 0; a < dimension; ++a)
@@ -40,13 +41,15 @@ void put_geostatic(ParticleSet& particles, std::size_t i, const GeostaticStart& 
     const double vertical = start.weight * std::max(0.0, start.surface - height);
     const double lateral = start.lateral_ratio * vertical, pressure = (vertical + 2 * lateral) / 3;
     if (particles.has(field::density))
-        particles.data(field::density)[i] = material.reference_density * (1 + pressure / material.bulk_modulus);
+        particles.data(field::density)[i] =
+            material.reference_density * (1 + pressure / material.bulk_modulus);
     if (!particles.has(field::deviatoric_stress)) return;
     for (int c = 0; c < component_count(Shape::symmetric_tensor, dimension); ++c) {
         const auto [a, b] = symmetric_axes(c, dimension);
-        particles.data(field::deviatoric_stress, c)[i] =
-            (lateral - vertical) * start.up[static_cast<std::size_t>(a)] * start.up[static_cast<std::size_t>(b)] +
-            (a == b ? pressure - lateral : 0.0);
+        particles.data(field::deviatoric_stress, c)[i] = (lateral - vertical) *
+                                                             start.up[static_cast<std::size_t>(a)] *
+                                                             start.up[static_cast<std::size_t>(b)] +
+                                                         (a == b ? pressure - lateral : 0.0);
     }
 }
 

@@ -49,15 +49,15 @@ DruckerPrager read_drucker_prager(const Section& table, int dimension) {
     if (peak.dilation_angle > peak.friction_angle)
         table.error("dilation_angle", "is above the friction angle: flow would gain energy");
     if (peak.cohesion == 0 && peak.friction_angle == 0)
-        table.error("friction_angle", "soil without friction and cohesion bears no shear: leave out its "
-                                      "strength and its shear modulus");
+        table.error("friction_angle",
+                    "soil without friction and cohesion bears no shear: leave out its "
+                    "strength and its shear modulus");
     const auto made = [match](const ConeKeys& keys) {
         return cone(match, keys.cohesion, keys.friction_angle, keys.dilation_angle);
     };
     DruckerPrager model{.peak = made(peak), .residual = made(peak)};
-    model.tensile_strength = table.has("tensile_strength")
-                                 ? table.number("tensile_strength", "Pa", {}, not_negative)
-                                 : infinity;
+    model.tensile_strength =
+        table.has("tensile_strength") ? table.number("tensile_strength", "Pa", {}, not_negative) : infinity;
     model.forgets_gaps = read_gaps(table);
     if (table.has("softening_strain")) {
         model.softening_strain = table.number("softening_strain", "1", {}, positive);
