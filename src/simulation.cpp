@@ -162,6 +162,7 @@ void Simulation::step() {
     const double dt = time_step_;
     phases_.enter(Phase::motion);
     sph::kick(particles_, constants_, setup_.sph, dt / 2);
+    sph::move_walls(particles_, walls_at(time_ + dt / 2));
     sph::drift(particles_, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
@@ -201,7 +202,8 @@ void Simulation::evaluate(double time_ahead, double elapsed) {
     }
     phases_.enter(Phase::material);
     material_response(time_ahead, elapsed);
-    if (!setup_.walls.empty()) extrapolate_into_walls(time_ + elapsed);
+    const std::vector<sph::WallNow> walls = walls_at(time_ + elapsed);
+    if (!walls.empty()) extrapolate_into_walls(walls);
     if (particles_.has(field::velocity_gradient))
         refreshed(Phase::gradients,
                   {&field::position, &field::mass, &field::smoothing_length, &field::body,
@@ -233,7 +235,7 @@ void Simulation::evaluate(double time_ahead, double elapsed) {
     for (std::size_t k = 0; k < cells.size(); ++k)
         pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);
     hold_bodies();
-    if (!setup_.walls.empty()) stop_walls();
+    sph::keep_walls(particles_, walls);
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
 }
@@ -302,13 +304,16 @@ void Simulation::return_plastic_stress(std::uint8_t body, double time_ahead, dou
                   particles_.own(field::pressure), bodies, body);
 }
 
+std::vector<sph::WallNow> Simulation::walls_at(double time) const {
+    const auto g = setup_.even_gravity.value_or(std::array<double, 3>{});
+    std::vector<sph::WallNow> walls(setup_.walls.size());
+    for (std::size_t b = 0; b < walls.size(); ++b)
+        if (setup_.walls[b]) walls[b] = sph::at_time(*setup_.walls[b], time, {g[0], g[1], g[2]});
+    return walls;
+}
+
 /// Wall particles take what is in front of them, whose copies they need, before copies of theirs are made.
-void Simulation::extrapolate_into_walls(double time) {
-    const auto vector = [](const std::array<double, 3>& v) { return dem::Vector3<>{v[0], v[1], v[2]}; };
-    const std::array<double, 3> gravity = setup_.even_gravity.value_or(std::array<double, 3>{});
-    walls_now_.assign(setup_.walls.size(), {});
-    for (std::size_t b = 0; b < setup_.walls.size(); ++b)
-        if (setup_.walls[b]) walls_now_[b] = sph::at_time(*setup_.walls[b], time, vector(gravity));
+void Simulation::extrapolate_into_walls(std::span<const sph::WallNow> walls) {
     phases_.enter(Phase::halo);
     Halo& halo = decomposition_.halo();
     halo.begin(particles_,
@@ -316,29 +321,7 @@ void Simulation::extrapolate_into_walls(double time) {
                 &field::predicted_density, &field::pressure, &field::predicted_stress});
     halo.finish();
     phases_.enter(Phase::gradients);
-    sph::wall_pass(particles_, decomposition_.table(), Cells::all, setup_.sph, walls_now_);
-}
-
-/// Walls feel no forces and do not age; they move as they are told.
-void Simulation::stop_walls() {
-    const int dimension = particles_.dimension();
-    const std::uint8_t* body = particles_.data(field::body);
-    for (std::size_t i = 0; i < particles_.size(); ++i) {
-        const sph::WallNow& wall = walls_now_[body[i]];
-        if (!wall.is_wall) continue;
-        std::array<double, 3> x{};
-        for (int a = 0; a < dimension; ++a)
-            x[static_cast<std::size_t>(a)] = particles_.data(field::position, a)[i];
-        const dem::Vector3<> v = wall.pose.velocity_at({x[0], x[1], x[2]});
-        const std::array<double, 3> velocity{v.x, v.y, v.z};
-        for (int a = 0; a < dimension; ++a) {
-            particles_.data(field::velocity, a)[i] = velocity[static_cast<std::size_t>(a)];
-            particles_.data(field::acceleration, a)[i] = 0;
-        }
-        particles_.data(field::specific_power)[i] = 0;
-        if (!particles_.has(field::velocity_gradient)) continue;
-        for (int c = 0; c < dimension * dimension; ++c) particles_.data(field::velocity_gradient, c)[i] = 0;
-    }
+    sph::wall_pass(particles_, decomposition_.table(), Cells::all, setup_.sph, walls);
 }
 
 void Simulation::hold_bodies() {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -129,9 +130,9 @@ class Simulation {
     void material_response(double time_ahead, double elapsed);
     void hold_bodies();
     void return_plastic_stress(std::uint8_t body, double time_ahead, double elapsed);
-    void extrapolate_into_walls(double time);
+    std::vector<sph::WallNow> walls_at(double time) const;
+    void extrapolate_into_walls(std::span<const sph::WallNow> walls);
     bool is_wall(std::size_t body) const { return !setup_.walls.empty() && setup_.walls[body]; }
-    void stop_walls();
     void soften_materials();
     void enter_late_phase_when_due();
     void conclude_step();
@@ -139,7 +140,6 @@ class Simulation {
     const Communicator& comm_;
     Setup setup_;
     sph::BodyConstants constants_;
-    std::vector<sph::WallNow> walls_now_;
     ParticleSet particles_;
     Decomposition decomposition_;
     std::optional<gravity::Gravity> gravity_;

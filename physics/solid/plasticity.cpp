@@ -27,13 +27,14 @@ Returned returned(const DruckerPrager& model, const Elasticity& elastic, const I
         cone.friction > 0 ? cone.cohesion / cone.friction : std::numeric_limits<double>::infinity();
     const double least = -std::min(model.tensile_strength, apex);  // pressure
     const double K = elastic.bulk_modulus, G = elastic.shear_modulus;
+    const double tangent = K + trial.pressure;  // dp per volume strain
     Returned result{.state = trial};
     Invariants& now = result.state;
     const double excess = trial.shear - cone.cohesion - cone.friction * trial.pressure;
     if (excess > 0) {
-        const double flow = excess / (G + K * cone.friction * cone.dilation);
+        const double flow = excess / (G + tangent * cone.friction * cone.dilation);
         const double lambda = std::min(flow, trial.shear / G);  // no farther than to the axis
-        now = {trial.pressure + K * cone.dilation * lambda, std::max(0.0, trial.shear - G * lambda)};
+        now = {trial.pressure + tangent * cone.dilation * lambda, std::max(0.0, trial.shear - G * lambda)};
     }
     result.volume_strain = std::log((K + now.pressure) / (K + trial.pressure));
     if (now.pressure < least) {

@@ -91,10 +91,10 @@ struct Returned {
 };
 
 /// Return of an elastic trial state to the yield surface. Drucker-Prager: along the flow in one step, exact
-/// for constant cones: tau - G lambda, p + K dilation lambda, lambda = f/(G + K friction dilation); behind
-/// the apex or the cut-off of tension to it. `strain`: plastic shear strain before. Granular flow: the
-/// implicit step in closed form (Dunatunga & Kamrin 2015, eq. 4.6), the trial being that of the last
-/// `elapsed` seconds.
+/// for constant cones: tau - G lambda, p + (K + p) dilation lambda, lambda = f/(G + (K + p) friction
+/// dilation); behind the apex or the cut-off of tension to it. `strain`: plastic shear strain before.
+/// Granular flow: the implicit step in closed form (Dunatunga & Kamrin 2015, eq. 4.6), the trial being that
+/// of the last `elapsed` seconds.
 Returned returned(const DruckerPrager& model, const Elasticity& elastic, const Invariants& trial,
                   double strain);
 Returned returned(const GranularFlow& model, const Elasticity& elastic, const Invariants& trial,

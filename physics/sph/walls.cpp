@@ -150,6 +150,43 @@ WallNow at_time(const Wall& wall, double time, const dem::Vector3<>& gravity) {
             .weight = gravity - acceleration};
 }
 
+namespace {
+
+template <class Change>
+void for_each_wall_particle(const ParticleSet& particles, std::span<const WallNow> walls, Change&& change) {
+    if (walls.empty()) return;
+    const std::uint8_t* body = particles.data(field::body);
+    for (std::size_t i = 0; i < particles.size(); ++i)
+        if (walls[body[i]].is_wall) change(i, walls[body[i]]);
+}
+
+}  // namespace
+
+void move_walls(ParticleSet& particles, std::span<const WallNow> walls) {
+    with_dimension(particles, [&](auto dimension) {
+        constexpr int D = dimension;
+        const auto x = components<D>(particles, field::position);
+        const auto v = components_to_write<D>(particles, field::velocity);
+        for_each_wall_particle(particles, walls, [&](std::size_t i, const WallNow& wall) {
+            const Vector3 velocity = wall.pose.velocity_at(vector_at<D>(x, i));
+            const std::array<double, 3> all{velocity.x, velocity.y, velocity.z};
+            for (int d = 0; d < D; ++d) v[d][i] = all[d];
+        });
+    });
+}
+
+void keep_walls(ParticleSet& particles, std::span<const WallNow> walls) {
+    move_walls(particles, walls);
+    const int dimension = particles.dimension();
+    double* power = particles.data(field::specific_power);
+    for_each_wall_particle(particles, walls, [&](std::size_t i, const WallNow&) {
+        power[i] = 0;
+        for (int a = 0; a < dimension; ++a) particles.data(field::acceleration, a)[i] = 0;
+        if (!particles.has(field::velocity_gradient)) return;
+        for (int c = 0; c < dimension * dimension; ++c) particles.data(field::velocity_gradient, c)[i] = 0;
+    });
+}
+
 void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                std::span<const WallNow> walls) {
     const double widening = settings.force_support() / settings.kernel_support();

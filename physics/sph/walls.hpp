@@ -42,4 +42,10 @@ WallNow at_time(const Wall& wall, double time, const dem::Vector3<>& gravity);
 void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                std::span<const WallNow> walls);
 
+/// Gives wall particles the velocity of their wall; nothing if `walls` is empty.
+void move_walls(ParticleSet& particles, std::span<const WallNow> walls);
+
+/// The same after an evaluation, and takes the rates from them: walls feel no forces and do not age.
+void keep_walls(ParticleSet& particles, std::span<const WallNow> walls);
+
 }  // namespace talus::sph
