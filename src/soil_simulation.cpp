@@ -51,6 +51,7 @@ SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, Partic
       setup_(std::move(setup)),
       particles_(std::move(particles)),
       decomposition_(comm, setup_.partition) {
+    flows_ = any_flows(setup_);
     double fastest = 0;
     for (const soil::Material& material : setup_.materials)
         fastest = std::max(fastest, material.wave_speed());
@@ -122,10 +123,12 @@ void SoilSimulation::step() {
     for (std::size_t a = 0; a < 3; ++a) settings.body_force[a] = gravity * setup_.gravity[a];
     phases_.enter(Phase::material);
     soil::apply_sources(particles_, stencils_, settings);
-    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
+    if (flows_)
+        soil::yield_to_tractions(particles_, boundary_nodes_, setup_.conditions, time_, setup_.materials);
     overlapped(
         {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
         [&](Cells which) { soil::advance_elements(particles_, stencils_.to_elements, which, settings); });
+    soil::gather_face_gradients(particles_, stencils_.face_gradients, memory_);
     if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
     overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces,
                [&](Cells which) { soil::advance_nodes(particles_, stencils_, which, settings, memory_); });

@@ -93,6 +93,7 @@ class SoilSimulation {
     std::vector<soil::BoundaryNode> boundary_nodes_;
     soil::StepMemory memory_;
     std::vector<int> substeps_;  ///< one a material
+    bool flows_ = false;
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     Phases phases_;

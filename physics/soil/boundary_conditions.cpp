@@ -1,8 +1,7 @@
 #include "physics/soil/boundary_conditions.hpp"
 
 #include "domain/soil_fields.hpp"
-#include "physics/sph/pass_support.hpp"
-#include "physics/sph/small_tensors.hpp"
+#include "physics/soil/state_columns.hpp"
 
 namespace talus::soil {
 
@@ -70,6 +69,51 @@ void impose_tractions_in(ParticleSet& particles, std::span<const BoundaryNode> n
         }
 }
 
+/// Changes of normal stresses that were imposed change the others as the strain along these stays the same.
+template <int D>
+class NormalStresses {
+  public:
+    explicit NormalStresses(ParticleSet& particles) : columns_(particles) {}
+
+    void remember(std::size_t i) {
+        for (std::size_t a = 0; a < D; ++a) before_[a] = columns_.stress[a][i];
+    }
+    void follow(std::size_t i, double poisson_ratio) const {
+        double sum = 0;
+        int changed = 0;
+        std::array<bool, 3> imposed{};
+        for (std::size_t a = 0; a < D; ++a) {
+            const double change = columns_.stress[a][i] - before_[a];
+            imposed[a] = change != 0;
+            changed += imposed[a];
+            sum += change;
+        }
+        if (changed == 0 || changed == 3) return;
+        const double follows = (changed == 1 ? poisson_ratio / (1 - poisson_ratio) : poisson_ratio) * sum;
+        for (std::size_t a = 0; a < D; ++a)
+            if (!imposed[a]) columns_.stress[a][i] += follows;
+        if (D < 3) columns_.lateral[i] += follows;
+    }
+
+  private:
+    StateColumns<D> columns_;
+    std::array<double, D> before_{};
+};
+
+template <int D>
+void yield_to_tractions_in(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                           std::span<const BoundaryCondition> conditions, std::span<const double> factors,
+                           std::span<const Material> materials) {
+    NormalStresses<D> normal(particles);
+    const std::uint8_t* body = particles.data(field::body);
+    for (const BoundaryNode& node : nodes) {
+        const Elasticity& elasticity = materials[body[node.index]].elasticity;
+        normal.remember(node.index);
+        impose_tractions_in<D>(particles, std::span(&node, 1), conditions, factors);
+        if (!elasticity.uniaxial_stress) normal.follow(node.index, elasticity.poisson_ratio);
+    }
+}
+
 }  // namespace
 
 void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nodes,
@@ -91,6 +135,15 @@ void impose_tractions(ParticleSet& particles, std::span<const BoundaryNode> node
     const std::vector<double> factors = factors_at(conditions, time);
     sph::with_dimension(particles, [&](auto dimension) {
         impose_tractions_in<dimension()>(particles, nodes, conditions, factors);
+    });
+}
+
+void yield_to_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                        std::span<const BoundaryCondition> conditions, double time,
+                        std::span<const Material> materials) {
+    const std::vector<double> factors = factors_at(conditions, time);
+    sph::with_dimension(particles, [&](auto dimension) {
+        yield_to_tractions_in<dimension()>(particles, nodes, conditions, factors, materials);
     });
 }
 

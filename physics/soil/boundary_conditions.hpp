@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "domain/particles.hpp"
+#include "physics/soil/constitutive.hpp"
 #include "physics/soil/stencils.hpp"
 #include "physics/soil/time_factor.hpp"
 
@@ -45,6 +46,12 @@ void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nod
 /// and the traction along one axis only one can be imposed on a face: the velocity goes first.
 void impose_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
                       std::span<const BoundaryCondition> conditions, double time);
+
+/// The same where stresses have relaxed at a fixed strain: the soil stretches across the faces until the
+/// tractions hold there, which changes the other normal stresses too.
+void yield_to_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                        std::span<const BoundaryCondition> conditions, double time,
+                        std::span<const Material> materials);
 
 /// Tributary area of a node on one face of it, from its mass [m^(D-1)].
 inline double face_area(double mass, double density, double spacing) {
