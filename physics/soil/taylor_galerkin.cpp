@@ -114,6 +114,8 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
     }
     const StencilRows& faces = stencils.to_faces;
     const std::uint8_t* on_faces = particles.data(soil_field::faces);
+    const double* water =
+        particles.has(soil_field::pore_pressure) ? particles.data(soil_field::pore_pressure) : nullptr;
     memory.face_velocity.resize(faces.targets.size() * D);
     for (std::uint32_t row = faces.begin(which); row < faces.end(which); ++row) {
         const std::uint32_t i = faces.targets[row];
@@ -126,6 +128,7 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
         for (unsigned a = 0; a < D; ++a)
             own[a] = (on_faces[i] >> (2 * a) & 3) != 0 ? stencils.own_weights[std::size_t{row} * D + a] : 0;
         sums.add_stress(own, columns.stress, i);
+        for (int a = 0; a < D && water; ++a) sums.divergence[a] -= own[a] * water[i];
         for (int a = 0; a < D; ++a)
             memory.face_velocity[std::size_t{row} * D + static_cast<std::size_t>(a)] = columns.velocity[a][i];
         accelerate(columns, i, sums, settings.materials[body[i]].density, settings);
