@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "comm/exact_sum.hpp"
@@ -43,6 +44,7 @@ void add_fields(ParticleSet& particles, const SoilSetup& setup) {
         particles.add(soil_field::viscoplastic_strain);
         particles.add(soil_field::viscoplastic_work);
     }
+    if (setup.saturated) soil::add_pore_fields(particles);
     if (any_cam_clay(setup)) particles.add(soil_field::preconsolidation);
 }
 
@@ -51,6 +53,7 @@ SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, Partic
       setup_(std::move(setup)),
       particles_(std::move(particles)),
       decomposition_(comm, setup_.partition) {
+    flows_ = any_flows(setup_);
     double fastest = 0;
     for (const soil::Material& material : setup_.materials)
         fastest = std::max(fastest, material.wave_speed());
@@ -63,6 +66,7 @@ SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, Partic
     Box box;
     box.dimension = setup_.dimension;
     grid_ = std::make_unique<CellGrid>(box, comm_.all_max(radius), 1);
+    if (setup_.saturated) pore_pressure_.emplace(comm_, decomposition_.halo());
     decomposition_.expect(particles_);
     decomposition_.divide(particles_, *grid_);
 }
@@ -73,8 +77,9 @@ void SoilSimulation::arrange() {
     decomposition_.halo().begin(
         particles_, {&field::position, &field::smoothing_length, &soil_field::grid, &field::body});
     decomposition_.halo().finish();
-    soil::build_stencils(particles_, decomposition_.table(), smooths(), stencils_);
-    boundary_nodes_ = soil::list_boundary_nodes(particles_, stencils_);
+    soil::build_stencils(particles_, decomposition_.table(),
+                         smooths() || setup_.pressure_smoothing > 0, stencils_);
+    boundary_nodes_ = soil::list_boundary_nodes(particles_, stencils_, setup_.conditions, setup_.spacing);
     std::string message;
     if (stencils_.poor > 0)
         message = fmt::format(
@@ -87,6 +92,8 @@ void SoilSimulation::arrange() {
 
 void SoilSimulation::start() {
     arrange();
+    if (setup_.saturated)
+        soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
 }
@@ -122,10 +129,14 @@ void SoilSimulation::step() {
     for (std::size_t a = 0; a < 3; ++a) settings.body_force[a] = gravity * setup_.gravity[a];
     phases_.enter(Phase::material);
     soil::apply_sources(particles_, stencils_, settings);
-    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
+    if (flows_)
+        soil::yield_to_tractions(particles_, boundary_nodes_, setup_.conditions, time_, setup_.materials);
     overlapped(
         {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
         [&](Cells which) { soil::advance_elements(particles_, stencils_.to_elements, which, settings); });
+    if (pore_pressure_) advance_pore_pressure();
+    phases_.enter(Phase::gradients);
+    soil::gather_face_gradients(particles_, stencils_.face_gradients, memory_);
     if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
     overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces,
                [&](Cells which) { soil::advance_nodes(particles_, stencils_, which, settings, memory_); });
@@ -139,6 +150,25 @@ void SoilSimulation::step() {
     pairs_ += stencils_.partner_count();
     refuse_not_finite();
     phases_.stop();
+}
+
+void SoilSimulation::advance_pore_pressure() {
+    phases_.enter(Phase::pressure);
+    const soil::PorePressure::Settings settings{.time_step = time_step_,
+                                                .spacing = setup_.spacing,
+                                                .stabilisation = setup_.pressure_smoothing,
+                                                .tolerance = setup_.pressure_tolerance,
+                                                .materials = setup_.materials};
+    const std::vector<std::uint32_t> imposed = soil::impose_pore_pressures(
+        particles_, boundary_nodes_, setup_.conditions, time_ + time_step_);
+    Halo& halo = decomposition_.halo();
+    halo.begin(particles_, {&soil_field::velocity});
+    halo.finish();
+    pore_pressure_->advance(particles_, stencils_, imposed, settings);
+    halo.begin(particles_, {&soil_field::pore_pressure});
+    halo.finish();
+    soil::PorePressure::correct_elements(particles_, stencils_.to_elements, settings);
+    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);  // now of this pressure
 }
 
 void SoilSimulation::refuse_not_finite() {
@@ -155,7 +185,9 @@ void SoilSimulation::refuse_not_finite() {
 
 void SoilSimulation::add_force(const soil::BoundaryNode& node, std::span<ExactSum> sums) const {
     const std::uint32_t i = node.index;
-    const soil::Tensor stress = soil::stress_at(particles_, i);
+    soil::Tensor stress = soil::stress_at(particles_, i);
+    if (setup_.saturated)
+        for (std::size_t a = 0; a < 3; ++a) stress[a] -= particles_.data(soil_field::pore_pressure)[i];
     const double density = setup_.materials[particles_.data(field::body)[i]].density;
     const double area = soil::face_area(particles_.data(field::mass)[i], density, setup_.spacing);
     constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
@@ -171,9 +203,11 @@ void SoilSimulation::add_force(const soil::BoundaryNode& node, std::span<ExactSu
 SoilTotals SoilSimulation::totals() const {
     enum Sum { mass, kinetic, elastic, plastic, px, py, pz, sum_count };
     std::vector<ExactSum> sums(sum_count + 3 * setup_.conditions.size());
-    std::array<double, 3> extremes{};
+    std::array<double, 5> extremes{};
+    extremes[3] = extremes[4] = -std::numeric_limits<double>::infinity();
     const double* m = particles_.data(field::mass);
     const std::uint8_t* body = particles_.data(field::body);
+    const double* water = setup_.saturated ? particles_.data(soil_field::pore_pressure) : nullptr;
     const bool flows = particles_.has(soil_field::viscoplastic_strain);
     stencils_.for_each_node([&](std::uint32_t i) {
         double speed2 = 0, way2 = 0;
@@ -191,6 +225,10 @@ SoilTotals SoilSimulation::totals() const {
         sums[elastic].add(volume * material.elasticity.energy(soil::stress_at(particles_, i)));
         extremes[0] = std::max(extremes[0], std::sqrt(speed2));
         extremes[1] = std::max(extremes[1], std::sqrt(way2));
+        if (water) {
+            extremes[3] = std::max(extremes[3], -water[i]);
+            extremes[4] = std::max(extremes[4], water[i]);
+        }
         if (!flows) return;
         sums[plastic].add(volume * particles_.data(soil_field::viscoplastic_work)[i]);
         extremes[2] = std::max(extremes[2], particles_.data(soil_field::viscoplastic_strain)[i]);
@@ -207,6 +245,8 @@ SoilTotals SoilSimulation::totals() const {
                       .greatest_speed = extremes[0],
                       .greatest_displacement = extremes[1],
                       .greatest_viscoplastic_strain = extremes[2],
+                      .least_pore_pressure = water ? -extremes[3] : 0,
+                      .greatest_pore_pressure = water ? extremes[4] : 0,
                       .forces = {}};
     for (std::size_t c = 0; c < setup_.conditions.size(); ++c)
         totals.forces.push_back({sums[sum_count + 3 * c].value(), sums[sum_count + 3 * c + 1].value(),

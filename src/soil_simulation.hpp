@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "domain/particles.hpp"
 #include "physics/soil/boundary_conditions.hpp"
 #include "physics/soil/constitutive.hpp"
+#include "physics/soil/pore_pressure.hpp"
 #include "physics/soil/stencils.hpp"
 #include "physics/soil/taylor_galerkin.hpp"
 #include "physics/soil/time_factor.hpp"
@@ -28,6 +30,9 @@ struct SoilSetup {
     double damping = 0;                          ///< [1/s]
     double hourglass = 0, stress_smoothing = 0;  ///< as soil::StepSettings
     std::vector<soil::BoundaryCondition> conditions;
+    bool saturated = false;          ///< pores hold water under pressure: the v-p_w model
+    double pressure_smoothing = 0;   ///< soil::PorePressure::Settings::stabilisation
+    double pressure_tolerance = 0;   ///< soil::PorePressure::Settings::tolerance
     PartitionMethod partition = PartitionMethod::cheapest;
 };
 
@@ -39,6 +44,7 @@ struct SoilTotals {
     double mass = 0, kinetic_energy = 0, elastic_energy = 0, viscoplastic_work = 0;
     std::array<double, 3> momentum{};
     double greatest_speed = 0, greatest_displacement = 0, greatest_viscoplastic_strain = 0;
+    double least_pore_pressure = 0, greatest_pore_pressure = 0;
     /// Of what is around the soil, through the face of each boundary condition with one [N, N/m in 2D, Pa in
     /// 1D].
     std::vector<std::array<double, 3>> forces;
@@ -73,11 +79,14 @@ class SoilSimulation {
         pairs_ = 0;
         phases_ = {};
     }
+    /// Iterations of the pore pressure's equation in the last step.
+    int pressure_iterations() const { return pore_pressure_ ? pore_pressure_->iterations() : 0; }
     /// Collective.
     SoilTotals totals() const;
 
   private:
     bool smooths() const { return setup_.hourglass > 0 || setup_.stress_smoothing > 0; }
+    void advance_pore_pressure();
     void arrange();
     template <class Pass>
     void overlapped(std::initializer_list<const FieldInfo*> fields, Phase phase, Pass&& pass);
@@ -92,7 +101,9 @@ class SoilSimulation {
     soil::Stencils stencils_;
     std::vector<soil::BoundaryNode> boundary_nodes_;
     soil::StepMemory memory_;
+    std::optional<soil::PorePressure> pore_pressure_;
     std::vector<int> substeps_;  ///< one a material
+    bool flows_ = false;
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     Phases phases_;

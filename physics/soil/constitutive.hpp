@@ -110,8 +110,10 @@ struct Material {
     Elasticity elasticity;
     Overstress overstress;
     YieldSurface surface;
+    double permeability = 0;  ///< of Darcy's law over the water's weight, k_w [m3 s/kg]
+    double storage = 0;       ///< 1/Q: (1 - n)/K_s + n/K_w [1/Pa]
 
-    double wave_speed() const;  ///< of compression [m/s]
+    double wave_speed() const;  ///< of compression, drained [m/s]
     bool flows() const { return !std::holds_alternative<Elastic>(surface); }
 };
 

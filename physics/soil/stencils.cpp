@@ -152,14 +152,14 @@ class Builder {
         const bool good = fit_.gather(h_[i]);
         StencilRows& rows = stencils_.to_nodes;
         rows.targets.push_back(i);
-        if (good) put_gradients(rows, fit_.gradients());
+        if (good) put_gradients(rows, fit_, fit_.gradients());
         rows.end_row();
         return good;
     }
 
-    void put_gradients(StencilRows& rows, const std::vector<Vector>& gradients) const {
+    static void put_gradients(StencilRows& rows, const Fit<D>& fit, const std::vector<Vector>& gradients) {
         for (std::size_t k = 0; k < gradients.size(); ++k) {
-            rows.partners.push_back(fit_.partners[k]);
+            rows.partners.push_back(fit.partners[k]);
             rows.weights.insert(rows.weights.end(), gradients[k].data(), gradients[k].data() + D);
         }
     }
@@ -167,36 +167,58 @@ class Builder {
     /// On faces the node itself is a partner, and derivatives are sums over the arms from the node: on a
     /// lattice the adjoint of the elements' gradient, which no other choice would leave stable there.
     bool append_face(std::uint32_t i, std::span<const std::uint32_t> near) {
-        fit_nearest(i, near, fit_);
+        fit_nearest(i, near, around_);
         StencilRows& rows = stencils_.to_faces;
         rows.targets.push_back(i);
         Vector own = Vector::Zero();
-        fit_.gather(h_[i]);
+        around_.gather(h_[i]);
         const Vector scale =
-            (fit_.moments.diagonal() + fit_.middle.cwiseProduct(fit_.middle)).eval();  // about the node
-        const bool good = !fit_.partners.empty() && scale.minCoeff() > round_enough * h_[i] * h_[i];
+            (around_.moments.diagonal() + around_.middle.cwiseProduct(around_.middle)).eval();
+        const bool good = !around_.partners.empty() && scale.minCoeff() > round_enough * h_[i] * h_[i];
+        std::vector<Vector> gradients;
         if (good) {
-            std::vector<Vector> gradients;
-            for (std::size_t k = 0; k < fit_.weights.size(); ++k) {
-                gradients.push_back((fit_.weights[k] * fit_.arms[k]).cwiseQuotient(scale));
+            for (std::size_t k = 0; k < around_.weights.size(); ++k) {
+                gradients.push_back((around_.weights[k] * around_.arms[k]).cwiseQuotient(scale));
                 own -= gradients.back();
             }
-            put_gradients(rows, gradients);
+            put_gradients(rows, around_, gradients);
         }
         rows.end_row();
         stencils_.own_weights.insert(stencils_.own_weights.end(), own.data(), own.data() + D);
+        if (good) append_face_gradient(i, near, gradients, own);
         return good;
     }
 
-    /// 1 at the node itself, less the mean over the nearest elements of their fits at the node.
-    void append_unseen(std::uint32_t i, std::span<const std::uint32_t> near, StencilRows& rows) {
+    /// Mean of the elements' gradients, less what to_faces makes of the elements' values and of the node's.
+    void append_face_gradient(std::uint32_t i, std::span<const std::uint32_t> near,
+                              const std::vector<Vector>& to_face, const Vector& own) {
+        list_nodes(i, near);
+        std::vector<Vector> totals(nodes_.size(), Vector::Zero());
+        totals[0] = -own;
+        for_each_element_weight([&](std::size_t k, std::size_t place, double value, const Vector& gradient) {
+            totals[place] += around_.weights[k] * gradient - value * to_face[k];
+        });
+        StencilRows& rows = stencils_.face_gradients;
+        rows.targets.push_back(i);
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            if (totals[n].isZero(0)) continue;
+            rows.partners.push_back(nodes_[n]);
+            rows.weights.insert(rows.weights.end(), totals[n].data(), totals[n].data() + D);
+        }
+        rows.end_row();
+    }
+
+    /// The node i, then the others that are near, in order.
+    void list_nodes(std::uint32_t i, std::span<const std::uint32_t> near) {
         nodes_.assign(1, i);
         for (const std::uint32_t j : near)
             if (grid_[j] == node_grid) nodes_.push_back(j);
-        totals_.assign(nodes_.size(), 0);
-        totals_[0] = 1;
-        fit_nearest(i, near, around_);
-        around_.gather(h_[i]);
+    }
+
+    /// Calls visit(k, place, value, gradient) for the weights of the nodes_ at `place` in the k-th element of
+    /// around_.
+    template <class Visit>
+    void for_each_element_weight(Visit&& visit) {
         for (std::size_t k = 0; k < around_.partners.size(); ++k) {
             const std::uint32_t e = around_.partners[k];
             fit_nearest(e, nodes_, fit_);
@@ -205,10 +227,21 @@ class Builder {
             std::size_t place = 0;
             for (std::size_t n = 0; n < gradients.size(); ++n) {
                 while (nodes_[place] != fit_.partners[n]) ++place;
-                totals_[place] -= around_.weights[k] * (fit_.weights[n] - gradients[n].dot(fit_.middle) -
-                                                        gradients[n].dot(around_.arms[k]));
+                visit(k, place, fit_.weights[n] - gradients[n].dot(fit_.middle), gradients[n]);
             }
         }
+    }
+
+    /// 1 at the node itself, less the mean over the nearest elements of their fits at the node.
+    void append_unseen(std::uint32_t i, std::span<const std::uint32_t> near, StencilRows& rows) {
+        list_nodes(i, near);
+        totals_.assign(nodes_.size(), 0);
+        totals_[0] = 1;
+        fit_nearest(i, near, around_);
+        around_.gather(h_[i]);
+        for_each_element_weight([&](std::size_t k, std::size_t place, double value, const Vector& gradient) {
+            totals_[place] -= around_.weights[k] * (value - gradient.dot(around_.arms[k]));
+        });
         rows.targets.push_back(i);
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             if (totals_[n] == 0) continue;
@@ -267,8 +300,8 @@ void build(const ParticleSet& particles, const CellTable& table, bool with_unsee
 
 void build_stencils(const ParticleSet& particles, const CellTable& table, bool with_unseen,
                     Stencils& stencils) {
-    for (StencilRows* rows :
-         {&stencils.to_nodes, &stencils.to_faces, &stencils.to_elements, &stencils.unseen})
+    for (StencilRows* rows : {&stencils.to_nodes, &stencils.to_faces, &stencils.to_elements,
+                              &stencils.face_gradients, &stencils.unseen})
         rows->clear();
     stencils.own_weights.clear();
     stencils.first_poor = stencils.poor = 0;

@@ -43,6 +43,9 @@ struct Stencils {
     StencilRows to_nodes, to_faces;
     /// Of each row of to_faces the weights of the gradient that the node has itself, D of them.
     std::vector<double> own_weights;
+    /// From nodes to nodes on faces, in order of to_faces: what the gradient there lacks to be the mean of
+    /// the gradients of the elements around, the conjugate of the forces; D weights a partner.
+    StencilRows face_gradients;
     /// From nodes to nodes, those within first, one weight a partner: what of the node's value no element
     /// sees, as it lies off the linear fits of the elements around. Empty unless asked for.
     StencilRows unseen;
@@ -57,7 +60,7 @@ struct Stencils {
     }
     std::size_t partner_count() const {
         return to_elements.partners.size() + to_nodes.partners.size() + to_faces.partners.size() +
-               unseen.partners.size();
+               face_gradients.partners.size() + unseen.partners.size();
     }
 };
 

@@ -52,6 +52,20 @@ void gather_unseen_in(ParticleSet& particles, const StencilRows& rows, const Ste
     }
 }
 
+template <int D>
+void gather_face_gradients_in(ParticleSet& particles, const StencilRows& rows, StepMemory& memory) {
+    const auto velocity = sph::components<D>(particles, soil_field::velocity);
+    memory.face_gradient.assign(rows.targets.size() * D * D, 0);
+    for (std::size_t row = 0; row < rows.targets.size(); ++row) {
+        double* found = memory.face_gradient.data() + row * D * D;
+        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k)
+            for (int a = 0; a < D; ++a)
+                for (int b = 0; b < D; ++b)
+                    found[a * D + b] += rows.weights[std::size_t{k} * D + static_cast<std::size_t>(b)] *
+                                        velocity[a][rows.partners[k]];
+    }
+}
+
 /// Takes shares of what was not seen away, `row` counted over all nodes.
 template <int D>
 void smooth_velocity(const StateColumns<D>& columns, std::size_t i, std::size_t row,
@@ -100,6 +114,8 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
     }
     const StencilRows& faces = stencils.to_faces;
     const std::uint8_t* on_faces = particles.data(soil_field::faces);
+    const double* water =
+        particles.has(soil_field::pore_pressure) ? particles.data(soil_field::pore_pressure) : nullptr;
     memory.face_velocity.resize(faces.targets.size() * D);
     for (std::uint32_t row = faces.begin(which); row < faces.end(which); ++row) {
         const std::uint32_t i = faces.targets[row];
@@ -112,6 +128,7 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
         for (unsigned a = 0; a < D; ++a)
             own[a] = (on_faces[i] >> (2 * a) & 3) != 0 ? stencils.own_weights[std::size_t{row} * D + a] : 0;
         sums.add_stress(own, columns.stress, i);
+        for (int a = 0; a < D && water; ++a) sums.divergence[a] -= own[a] * water[i];
         for (int a = 0; a < D; ++a)
             memory.face_velocity[std::size_t{row} * D + static_cast<std::size_t>(a)] = columns.velocity[a][i];
         accelerate(columns, i, sums, settings.materials[body[i]].density, settings);
@@ -133,10 +150,11 @@ void advance_face_stress_in(ParticleSet& particles, const Stencils& stencils, co
         for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k, weight += D)
             sums.add_velocity(weight, columns.velocity, rows.partners[k]);
         const double* own = stencils.own_weights.data() + std::size_t{row} * D;
+        const double* more = memory.face_gradient.data() + std::size_t{row} * D * D;
         const double* before = memory.face_velocity.data() + std::size_t{row} * D;
         for (int a = 0; a < D; ++a)
             for (int b = 0; b < D; ++b)
-                sums.gradient[a][b] += own[b] * 0.5 * (before[a] + columns.velocity[a][i]);
+                sums.gradient[a][b] += own[b] * 0.5 * (before[a] + columns.velocity[a][i]) + more[a * D + b];
         columns.add_elastic(i, settings.materials[body[i]].elasticity, sums.gradient, settings.time_step);
         smooth_stress(columns, i, inner + row, settings, memory);
     }
@@ -182,6 +200,11 @@ void gather_unseen(ParticleSet& particles, const StencilRows& rows, const StepSe
                    StepMemory& memory) {
     sph::with_dimension(
         particles, [&](auto dimension) { gather_unseen_in<dimension()>(particles, rows, settings, memory); });
+}
+
+void gather_face_gradients(ParticleSet& particles, const StencilRows& rows, StepMemory& memory) {
+    sph::with_dimension(
+        particles, [&](auto dimension) { gather_face_gradients_in<dimension()>(particles, rows, memory); });
 }
 
 void advance_elements(ParticleSet& particles, const StencilRows& rows, Cells which,

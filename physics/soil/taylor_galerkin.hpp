@@ -30,6 +30,7 @@ struct StepMemory {
     std::vector<double> unseen;         ///< of each node's state, in order of Stencils::unseen
     std::size_t width = 0;              ///< components of it a node
     std::vector<double> face_velocity;  ///< before the step, in order of Stencils::to_faces
+    std::vector<double> face_gradient;  ///< of Stencils::face_gradients, D x D a row
 };
 
 /// Sources: nodes' stress relaxes beyond the yield surface, velocities are damped.
@@ -38,6 +39,9 @@ void apply_sources(ParticleSet& particles, const Stencils& stencils, const StepS
 /// What no element sees of the nodes' state, as far as some of it is to be taken away.
 void gather_unseen(ParticleSet& particles, const StencilRows& rows, const StepSettings& settings,
                    StepMemory& memory);
+
+/// What the velocity gradient on faces gets from the nodes around.
+void gather_face_gradients(ParticleSet& particles, const StencilRows& rows, StepMemory& memory);
 
 /// Velocity and stress of elements half a step ahead of the nodes.
 void advance_elements(ParticleSet& particles, const StencilRows& rows, Cells which,

@@ -54,7 +54,7 @@ double default_reference(const soil::YieldSurface& surface) {
 
 }  // namespace
 
-soil::Material read_soil_material(const Section& root, const Section& body) {
+soil::Material read_soil_material(const Section& root, const Section& body, bool saturated) {
     soil::Material material;
     material.name = body.text("material");
     const Section table = root.section("materials").section(material.name);
@@ -65,6 +65,10 @@ soil::Material read_soil_material(const Section& root, const Section& body) {
     material.density = table.number("density", "kg/m3", {}, positive);
     material.elasticity.youngs_modulus = table.number("youngs_modulus", "Pa", {}, positive);
     material.elasticity.poisson_ratio = table.number("poisson_ratio", "1", {}, {0, 0.495});
+    if (saturated) {
+        material.permeability = table.number("permeability", "m3 s kg-1", {}, not_negative);
+        material.storage = 1 / table.number("mixture_stiffness", "Pa", {}, positive);
+    }
     const Section yield = table.section("yield");
     if (!yield.exists()) return material;
     material.surface = read_surface(yield);
@@ -139,7 +143,7 @@ void read_soil_boundaries(const Section& root, SoilScene& scene) {
         soil::BoundaryCondition condition;
         condition.name = table.text("name", table.path());
         refuse_same_name(table, scene.simulation.conditions, condition.name);
-        const std::string kind = table.choice("kind", {"fixed", "free_slip", "velocity", "traction"});
+        const std::string kind = table.choice("kind", {"fixed", "free_slip", "velocity", "traction", "drained"});
         if (table.has("face") || kind == "free_slip" || kind == "traction")
             condition.face = read_face(table, dimension);
         condition.kind = Kind::velocity;
@@ -154,11 +158,17 @@ void read_soil_boundaries(const Section& root, SoilScene& scene) {
             condition.value = read_point(table, "traction", "Pa", dimension);
             condition.factor = read_time_factor(table, "change");
         }
-        BoundaryRegion region{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
-        if (table.has("lower")) region.lower = read_point(table, "lower", "m", dimension);
-        if (table.has("upper")) region.upper = read_point(table, "upper", "m", dimension);
+        if (kind == "drained") {
+            condition.kind = Kind::pore_pressure;
+            condition.value[0] = table.number("pore_pressure", "Pa", 0.0);
+            condition.factor = read_time_factor(table, "change");
+            if (!scene.simulation.saturated) table.error("kind", "needs soil.saturated = true");
+        }
+        condition.lower.fill(-infinity);
+        condition.upper.fill(infinity);
+        if (table.has("lower")) condition.lower = read_point(table, "lower", "m", dimension);
+        if (table.has("upper")) condition.upper = read_point(table, "upper", "m", dimension);
         scene.simulation.conditions.push_back(condition);
-        scene.regions.push_back(region);
     }
 }
 

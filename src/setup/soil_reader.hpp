@@ -8,8 +8,9 @@ namespace talus {
 
 // Parts of a scene of soil. Faults are recorded in the scene.
 
+/// `saturated`: with what water in its pores needs.
 /// The material that a body's key `material` names, from the scene's table [materials.NAME].
-soil::Material read_soil_material(const Section& root, const Section& body);
+soil::Material read_soil_material(const Section& root, const Section& body, bool saturated);
 
 /// A table with times and values, or a frequency, under `key`; absent: 1 for ever.
 soil::TimeFactor read_time_factor(const Section& table, std::string_view key);

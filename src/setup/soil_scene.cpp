@@ -120,7 +120,7 @@ void read_soil_bodies(const Communicator& comm, const Scene& scene, SoilScene& s
         SoilBody body;
         body.name = table.text("name", table.path());
         refuse_same_name(table, soil.bodies, body.name);
-        soil.simulation.materials.push_back(read_soil_material(root, table));
+        soil.simulation.materials.push_back(read_soil_material(root, table, soil.simulation.saturated));
         body.shape = read_shape(table, soil.simulation.materials.back().density, context);
         body.velocity = origin_default(table, "velocity", "m/s", context.dimension);
         soil.bodies.push_back(body);
@@ -150,6 +150,13 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     setup.strength_factor = read_time_factor(table, "strength_change");
     soil.smoothing = table.number("smoothing", "1", soil::default_smoothing, {0.4, 1});
     soil.jitter = table.number("jitter", "1", 0.0, {0, 0.25});
+    setup.saturated = table.flag("saturated", false);
+    if (setup.saturated) {
+        setup.pressure_smoothing =
+            table.number("pressure_smoothing", "1", setup.dimension == 1 ? 0 : 1, not_negative);
+        setup.pressure_tolerance = table.number("pressure_tolerance", "1", 1e-10, {1e-15, 1e-2});
+        if (soil.jitter > 0) table.error("jitter", "a saturated soil needs an even lattice");
+    }
     read_soil_bodies(comm, scene, soil);
     bool flows = false;
     for (const soil::Material& material : setup.materials) flows |= material.flows();
@@ -194,12 +201,12 @@ void for_each_node(const SoilLattice& lattice, Visit&& visit) {
 }
 
 bool holds(const SoilScene& scene, std::size_t condition, const SoilLattice::Node& node) {
-    const double tolerance = 1e-3 * scene.lattice.spacing;
+    const soil::BoundaryCondition& given = scene.simulation.conditions[condition];
+    const double beyond = soil::reach_beyond(given.kind) * scene.lattice.spacing;
     const Point at = scene.lattice.corner(node.index);
-    const BoundaryRegion& region = scene.regions[condition];
     for (std::size_t a = 0; a < static_cast<std::size_t>(scene.lattice.dimension); ++a)
-        if (at[a] < region.lower[a] - tolerance || at[a] > region.upper[a] + tolerance) return false;
-    const soil::Face face = scene.simulation.conditions[condition].face;
+        if (at[a] < given.lower[a] - beyond || at[a] > given.upper[a] + beyond) return false;
+    const soil::Face face = given.face;
     return face < 0 || (node.faces >> face & 1) != 0;
 }
 
@@ -269,8 +276,10 @@ void put_node(const SoilScene& scene, ParticleSet& particles, std::uint64_t id,
     for (const std::uint8_t body : node.around)
         if (body != no_body)
             particles.data(field::mass)[i] += share * scene.simulation.materials[body].density;
+    if (particles.has(soil_field::volume))
+        particles.data(soil_field::volume)[i] = share * node.cell_count();
     particles.data(soil_field::faces)[i] = node.faces;
-    for (std::size_t c = 0; c < scene.regions.size(); ++c)
+    for (std::size_t c = 0; c < scene.simulation.conditions.size(); ++c)
         if (holds(scene, c, node)) particles.data(soil_field::conditions)[i] |= std::uint32_t{1} << c;
     if (!particles.has(soil_field::preconsolidation)) return;
     if (const auto* clay = std::get_if<soil::CamClay>(&scene.simulation.materials[node.body].surface))

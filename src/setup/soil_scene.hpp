@@ -27,17 +27,11 @@ struct InitialStress {
     double lateral_ratio = 1;       ///< K0 [1]
 };
 
-/// Where a boundary condition holds.
-struct BoundaryRegion {
-    Point lower, upper;  ///< [m]
-};
-
 /// A scene of soil, read and checked.
 struct SoilScene {
     std::string title;
     SoilSetup simulation;
     std::vector<SoilBody> bodies;
-    std::vector<BoundaryRegion> regions;  ///< one a boundary condition
     SoilLattice lattice;
     double smoothing = 0;  ///< smoothing length over the spacing [1]
     double jitter = 0;     ///< random displacement of inner nodes along each axis, at most, in spacings [1]
