@@ -38,7 +38,9 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     if (settings.earth_pressure) add({&field::divergence});
     const bool fitted = settings.form == depth::Form::bed_fitted;
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
-    if (fitted || !level) add({&field::bed_slope});
+    const bool by_level = settings.gradient == depth::Gradient::level;
+    if (by_level) add({&field::surface_level});
+    if (fitted || !level || by_level) add({&field::bed_slope});
     if (fitted) add({&field::apparent_gravity});
     if (setup.pore_pressure) particles.add(field::pore_pressure, setup.pore_pressure->points);
 }
@@ -145,12 +147,17 @@ void DepthSimulation::evaluate(double time_ahead) {
     if (setup_.pore_pressure) consolidate(loads_before, 2 * time_ahead);
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
+    const bool by_level = setup_.settings.gradient == depth::Gradient::level;
+    // Where the level drives, the factor is zero; its place in the messages is the level's.
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
                {&field::position, &field::volume, &field::smoothing_length, &field::predicted_velocity,
-                &field::depth, &field::wave_speed, &field::pressure_factor, &field::grad_h_volume},
+                &field::depth, &field::wave_speed, &field::grad_h_volume,
+                by_level ? static_cast<const FieldInfo*>(&field::surface_level) : &field::pressure_factor},
                [&](Cells cells) {
                    depth::pressure_pass(particles_, decomposition_.table(), cells, setup_.settings,
                                         pass_count_);
+                   if (by_level)
+                       depth::level_pass(particles_, decomposition_.table(), cells, setup_.settings);
                });
     depth::slide_on_bed(particles_, setup_.settings);
     const std::span<const CellEntry> cells = decomposition_.own_cells();

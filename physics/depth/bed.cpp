@@ -37,6 +37,7 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
     double* factor = particles.data(field::pressure_factor);
     const double* divergence = settings.earth_pressure ? particles.data(field::divergence) : nullptr;
     const bool fitted = settings.form == Form::bed_fitted;
+    double* level = settings.gradient == Gradient::level ? particles.data(field::surface_level) : nullptr;
     double* apparent = fitted ? particles.data(field::apparent_gravity) : nullptr;
     const double half = 0.5 * lattice_factor<D>(settings);
     for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -60,7 +61,8 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
         const double lateral_gravity =
             lateral(settings, divergence ? divergence[i] : 0) * along_normal * tilt.cosine;
         wave_speed[i] = std::sqrt(lateral_gravity * height[i]);
-        factor[i] = half * lateral_gravity;
+        factor[i] = level ? 0 : half * lateral_gravity;
+        if (level) level[i] = ground.elevation + depth[i];
     }
 }
 
@@ -92,7 +94,7 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
 }
 
 void slide_on_bed(ParticleSet& particles, const Settings& settings) {
-    if (particles.has(field::bed_slope)) {
+    if (settings.gradient == Gradient::potential && particles.has(field::bed_slope)) {
         if (particles.dimension() == 1)
             slide<1>(particles, settings);
         else

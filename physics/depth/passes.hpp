@@ -28,6 +28,10 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
 void pressure_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                    sph::PassCount& count);
 
+/// Adds gravity along the gradient of the free surface; for Gradient::level, whose pressure_factor is zero.
+/// Reads position, volume, smoothing_length, depth, surface_level of partners.
+void level_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
+
 /// Completes the acceleration by gravity on the slope, by the metric of the bed's surface if the form is
 /// fitted to it, and by the still_acceleration if the set has that.
 void slide_on_bed(ParticleSet& particles, const Settings& settings);

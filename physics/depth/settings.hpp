@@ -10,6 +10,13 @@ enum class Form : std::uint8_t {
     bed_fitted  ///< depths along the normal of the bed, particles move on its surface: steep slopes
 };
 
+/// What drives the columns apart.
+enum class Gradient : std::uint8_t {
+    potential,  ///< the force of a potential energy: momentum on a plane and energy are kept
+    level  ///< the gradient of the free surface, corrected: deep water over a steep, rough bed is driven by
+           ///< its level alone; neither momentum nor energy are kept pair by pair
+};
+
 /// Coefficients of lateral earth pressure: S. B. Savage, K. Hutter, J. Fluid Mech. 199 (1989) 177.
 struct EarthPressure {
     double active;   ///< where the flow spreads [1]
@@ -19,6 +26,7 @@ struct EarthPressure {
 /// Choices and parameters of the depth-integrated model.
 struct Settings {
     Form form = Form::cartesian;
+    Gradient gradient = Gradient::potential;
     bool balance = false;                 ///< lakes released at a level stay at rest (docs/decisions/018)
     double gravity = 9.81;                ///< g [m/s2]
     double density = 1000;                ///< of the flow [kg/m3]

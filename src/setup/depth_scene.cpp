@@ -48,6 +48,7 @@ depth::Settings read_settings(const Section& root, int dimension, const DepthSet
     depth::Settings settings;
     const bool fitted = table.choice("form", {"cartesian", "bed_fitted"}, "cartesian") == "bed_fitted";
     settings.form = fitted ? depth::Form::bed_fitted : depth::Form::cartesian;
+    const bool by_level = table.choice("gradient", {"potential", "level"}, "potential") == "level";
     settings.gravity = table.number("gravity", "m s-2", 9.81, positive);
     settings.density = table.number("density", "kg m-3", 1000.0, positive);
     settings.eta = table.number("eta", "1", dimension == 1 ? 1.6 : 1.3, {1, 4});
@@ -55,8 +56,13 @@ depth::Settings read_settings(const Section& root, int dimension, const DepthSet
     settings.courant = table.number("courant", "1", 0.4, {0, 1, true});
     settings.entrainment = table.number("entrainment", "m-1", 0.0, not_negative);
     if (fitted) settings.curvature = table.flag("curvature", true);
-    if (!fitted && any_level(root)) settings.balance = table.flag("balance", true);
+    if (!fitted && any_level(root)) settings.balance = table.flag("balance", !by_level);
     settings.earth_pressure = read_earth_pressure(table, friction_coefficient(setup.friction));
+    if (by_level) {
+        settings.gradient = depth::Gradient::level;
+        if (fitted) table.error("gradient", "level needs form = \"cartesian\"");
+        if (settings.earth_pressure) table.error("internal_friction_angle", "needs gradient = \"potential\"");
+    }
     return settings;
 }
 

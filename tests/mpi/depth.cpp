@@ -1,0 +1,171 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "domain/depth_fields.hpp"
+#include "src/setup/depth_scene.hpp"
+#include "tests/support/gathered.hpp"
+
+/// Depth-integrated flows have the same bits on any number of ranks, whoever owns what, and across an
+/// interruption, and lose no volume.
+namespace talus::test {
+namespace {
+
+constexpr int steps = 40;
+
+std::shared_ptr<const Terrain> bumpy_slope() {
+    TerrainGrid grid{{-60, -60}, {4, 4}, 31, 31, {}};
+    for (std::size_t row = 0; row < grid.rows; ++row)
+        for (std::size_t column = 0; column < grid.columns; ++column) {
+            const double x = -60 + 4 * static_cast<double>(column), y = -60 + 4 * static_cast<double>(row);
+            grid.elevations.push_back(-0.6 * x + std::sin(0.2 * x) * std::cos(0.3 * y));
+        }
+    return std::make_shared<const Terrain>(std::move(grid));
+}
+
+Release cap(double x, double spacing) {
+    Release release;
+    release.name = "cap";
+    release.shape = SphereShape{{x, 3, 0}, 20};
+    release.spacing = spacing;
+    release.depth = 2;
+    release.parabolic = true;
+    return release;
+}
+
+/// Runs over the rim of its terrain and takes up what lies on its way.
+DepthScene avalanche() {
+    DepthScene scene;
+    DepthSetup& setup = scene.simulation;
+    setup.box.dimension = 2;
+    setup.terrain = bumpy_slope();
+    setup.friction = depth::Voellmy{.friction = 0.2, .turbulence = 500};
+    setup.settings.form = depth::Form::bed_fitted;
+    setup.settings.entrainment = 0.005;
+    setup.settings.earth_pressure = depth::EarthPressure{.active = 0.8, .passive = 2};
+    setup.settings.largest_smoothing_length = 10;
+    scene.releases = {cap(30, 2)};
+    scene.releases.front().velocity = {12, 1, 0};
+    return scene;
+}
+
+/// A lake and a flood that runs into it between walls.
+DepthScene flooded_lake() {
+    DepthScene scene;
+    DepthSetup& setup = scene.simulation;
+    setup.box = {2, {-50, -40, 0}, {50, 40, 0}, {Boundary::reflecting, Boundary::periodic, Boundary::open}};
+    setup.terrain = bumpy_slope();
+    setup.friction = depth::Manning{.roughness = 0.05};
+    setup.settings.balance = true;
+    setup.settings.largest_smoothing_length = 12;
+    Release lake;
+    lake.name = "lake";
+    lake.shape = BoxShape{{20, -40, 0}, {50, 40, 0}};
+    lake.spacing = 2;
+    lake.level = -15;
+    scene.releases = {lake, cap(-10, 2)};
+    scene.releases.back().parabolic = false;
+    return scene;
+}
+
+DepthScene break_1d() {
+    DepthScene scene;
+    DepthSetup& setup = scene.simulation;
+    setup.box = {1, {-20, 0, 0}, {20, 0, 0}, {Boundary::reflecting}};
+    setup.terrain = std::make_shared<const Terrain>(0.0, std::array<double, 2>{});
+    setup.friction = depth::Coulomb{.friction = 0.1};
+    setup.settings.eta = 1.6;
+    setup.settings.largest_smoothing_length = 10;
+    Release release;
+    release.shape = BoxShape{{-20, 0, 0}, {0, 0, 0}};
+    release.spacing = 0.1;
+    release.depth = 1;
+    scene.releases = {release};
+    return scene;
+}
+
+struct How {
+    PartitionMethod partition = PartitionMethod::metis;
+    int rebalance_interval = 10;
+};
+
+DepthSetup setup_of(const DepthScene& scene, const How& how) {
+    DepthSetup setup = scene.simulation;
+    setup.partition = how.partition;
+    setup.rebalance_interval = how.rebalance_interval;
+    return setup;
+}
+
+std::uint64_t hash_after(const Communicator& comm, const DepthScene& scene, const How& how) {
+    DepthSimulation run(comm, setup_of(scene, how), make_columns(comm, scene));
+    run.start();
+    for (int k = 0; k < steps; ++k) run.step();
+    return state_hash(comm, run.particles());
+}
+
+std::uint64_t hash_alone(DepthScene (*scene)()) {
+    static std::map<DepthScene (*)(), std::uint64_t> known;
+    const Communicator alone(MPI_COMM_SELF);
+    if (!known.contains(scene)) known[scene] = hash_after(alone, scene(), {});
+    return known[scene];
+}
+
+class DepthSameBits : public testing::TestWithParam<DepthScene (*)()> {};
+
+TEST_P(DepthSameBits, WhoeverOwnsWhat) {
+    const Communicator world(MPI_COMM_WORLD);
+    for (const How& how : {How{PartitionMethod::cheapest, 3}, How{PartitionMethod::slabs, 1},
+                           How{PartitionMethod::scrambled, 0}})
+        EXPECT_EQ(hash_after(world, GetParam()(), how), hash_alone(GetParam()))
+            << "method " << static_cast<int>(how.partition);
+}
+
+TEST_P(DepthSameBits, AfterInterruption) {
+    const Communicator world(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
+    const DepthScene scene = GetParam()();
+    for (const int stop : {1, 23}) {
+        DepthSimulation first(world, setup_of(scene, {}), make_columns(world, scene));
+        first.start();
+        for (int k = 0; k < stop; ++k) first.step();
+        const GatheredState saved = gather_state(world, first.particles());
+        std::map<std::string, double> numbers;
+        first.save_numbers(numbers);
+        ParticleSet share = empty_columns(scene.simulation);
+        const auto ranks = static_cast<std::size_t>(world.size()),
+                   rank = static_cast<std::size_t>(world.rank());
+        fill(share, saved, [&](std::size_t k) { return k % ranks == rank; });
+        DepthSimulation second(world, setup_of(scene, {PartitionMethod::bisection, 5}), std::move(share));
+        second.resume(first.time(), first.time_step(), first.step_count(), numbers);
+        for (int k = stop; k < steps; ++k) second.step();
+        EXPECT_EQ(state_hash(world, second.particles()), hash_alone(GetParam())) << "stopped at " << stop;
+    }
+}
+
+std::string name_of(const testing::TestParamInfo<DepthScene (*)()>& scene) {
+    constexpr const char* names[] = {"Avalanche", "FloodedLake", "Break1D"};
+    return names[scene.index];
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, DepthSameBits, testing::Values(avalanche, flooded_lake, break_1d), name_of);
+
+// What is there at the end and what has left is what was released: nothing is taken up here.
+TEST(DepthVolume, IsThereOrHasLeft) {
+    const Communicator world(MPI_COMM_WORLD);
+    DepthScene scene = avalanche();
+    scene.simulation.settings.entrainment = 0;
+    DepthSimulation run(world, setup_of(scene, {}), make_columns(world, scene));
+    run.start();
+    const double released = run.totals().volume;
+    const std::uint64_t particles = run.total_particles();
+    while (run.time() < 4) run.step();
+    EXPECT_GT(run.outflow().count(), 10u);
+    EXPECT_GT(run.total_particles(), 10u);
+    EXPECT_EQ(run.total_particles() + run.outflow().count(), particles);
+    EXPECT_NEAR(run.totals().volume + run.outflow().volume(), released, 1e-13 * released);
+    EXPECT_NE(run.outflow().take_note().find("have left the terrain"), std::string::npos);
+    EXPECT_TRUE(run.outflow().take_note().empty());
+}
+
+}  // namespace
+}  // namespace talus::test
