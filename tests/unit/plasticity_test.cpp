@@ -151,7 +151,7 @@ struct RateForm {
 
     void step(const std::array<double, 3>& e,
               double time) {  // deviatoric strain rate xx yy xy, no volume change
-        const double G = sand.shear_modulus, K = sand.bulk_modulus;
+        const double G = sand.shear_modulus, K = sand.bulk_modulus + p;  // per volume strain
         const double tau = std::sqrt(s[0] * s[0] + s[1] * s[1] + s[0] * s[1] + s[2] * s[2]);
         const double power = 2 * (s[0] * e[0] + s[1] * e[1] + s[2] * e[2]) + s[0] * e[1] + s[1] * e[0];
         double lambda = 0;

@@ -39,7 +39,8 @@ struct Matter {
     double shear(std::size_t i) const { return s_yy.empty() ? 0 : s_yy[i]; }
 };
 
-/// Greatest over time of the rms error of the vertical stress over rho g H, and the mean lateral over vertical stress.
+/// Greatest over time of the rms error of the vertical stress over rho g H, and the mean lateral over
+/// vertical stress.
 struct Rest {
     double error = 0, ratio = 0, drift = 0;
 };
@@ -59,19 +60,22 @@ Rest rest(const Communicator& comm, const std::vector<std::string>& overrides) {
             square += std::pow(stress / weight - (1 - now.y[i]), 2);
             vertical += stress;
             lateral += now.pressure[i] - (now.s_xx.empty() ? 0 : now.s_xx[i]);
-            found.drift = std::max({found.drift, std::abs(now.x[i] - first.x[i]), std::abs(now.y[i] - first.y[i])});
+            found.drift =
+                std::max({found.drift, std::abs(now.x[i] - first.x[i]), std::abs(now.y[i] - first.y[i])});
         }
         found.error = std::max(found.error, std::sqrt(square / static_cast<double>(now.y.size())));
         found.ratio = lateral / vertical;
     }
     if (comm.is_root())
-        fmt::print("vertical stress to {:.4f} of rho g H, K0 = {:.4f}, moved {:.1e} m\n", found.error, found.ratio, found.drift);
+        fmt::print("vertical stress to {:.4f} of rho g H, K0 = {:.4f}, moved {:.1e} m\n", found.error,
+                   found.ratio, found.drift);
     return found;
 }
 
 TEST(SoilAtRest, KeepsTheStressOfItsWeight) {
-    // Ten periods of the column's first mode, 4 H/c_L = 0.049 s. The cone of the scene bears K0 >= (root 3 - f)/(root 3 + 2 f),
-    // f = sin 30 deg, in uniaxial strain (tau = (1 - K0) sigma/root 3, p = (1 + 2 K0) sigma/3), elasticity wants less.
+    // Ten periods of the column's first mode, 4 H/c_L = 0.049 s. The cone of the scene bears K0 >= (root 3 -
+    // f)/(root 3 + 2 f), f = sin 30 deg, in uniaxial strain (tau = (1 - K0) sigma/root 3, p = (1 + 2 K0)
+    // sigma/3), elasticity wants less.
     const double f = 0.5, least = (std::sqrt(3.0) - f) / (std::sqrt(3.0) + 2 * f);
     for (const char* formulation : {"godunov", "standard"}) {
         const Rest found = rest(world(), {fmt::format("sph.formulation={}", formulation)});
@@ -88,8 +92,8 @@ TEST(SoilAtRest, ElasticSoilHasTheRatioOfHooke) {
 }
 
 TEST(WallsOfParticles, HoldWaterAsWell) {
-    const Rest found = rest(
-        world(), {"materials.sand={density=1000,equation_of_state={kind=\"linear\",sound_speed=30},least_pressure=0}"});
+    const Rest found = rest(world(), {"materials.sand={density=1000,equation_of_state={kind=\"linear\",sound_"
+                                      "speed=30},least_pressure=0}"});
     EXPECT_LT(found.error, 0.02);
     EXPECT_NEAR(found.ratio, 1, 1e-12);
     EXPECT_LT(found.drift, 0.05) << "of a spacing, nothing leaks";
@@ -99,8 +103,8 @@ TEST(WallsOfParticles, DoNotHoldBackWhatSlips) {
     // An elastic block on a slope without friction: u = g_x t.
     const SceneSetup scene = solid_scene(
         world(), "column_collapse",
-        {"sph.gravity=[2.5,-9.5]", "body[1].wall=free_slip", "body[1].normal=[0,1]", "body[0].geostatic.surface=-1",
-         "body[0].lower=[0.05,0]", "materials.bars.strength.cohesion=1e6"});
+        {"sph.gravity=[2.5,-9.5]", "body[1].wall=free_slip", "body[1].normal=[0,1]",
+         "body[0].geostatic.surface=-1", "body[0].lower=[0.05,0]", "materials.bars.strength.cohesion=1e6"});
     const auto run = started(world(), scene);
     while (run->time() < 0.1) run->step();
     const Matter block(*run);
@@ -112,12 +116,13 @@ TEST(WallsOfParticles, DoNotHoldBackWhatSlips) {
 }
 
 TEST(ColumnCollapse, RunsOutAsColumnsOfSandDo) {
-    // a = 2: run-out over length from 2.4 to 3.6, height over length from 0.8 to 1.7, around E. Lajeunesse, J. B. Monnier, G. M.
-    // Homsy, Phys. Fluids 17 (2005) 103302, and G. Lube et al., Phys. Rev. E 72 (2005) 041301.
+    // a = 2: run-out over length from 2.4 to 3.6, height over length from 0.8 to 1.7, around E. Lajeunesse,
+    // J. B. Monnier, G. M. Homsy, Phys. Fluids 17 (2005) 103302, and G. Lube et al., Phys. Rev. E 72 (2005)
+    // 041301.
     const Communicator comm = world();
-    const SceneSetup scene =
-        solid_scene(comm, "column_collapse", {"body[0].upper=[0.1,0.2]", "body[2].upper=[0,0.25]",
-                                             "materials.bars.strength.friction_angle=31 deg"});
+    const SceneSetup scene = solid_scene(comm, "column_collapse",
+                                         {"body[0].upper=[0.1,0.2]", "body[2].upper=[0,0.25]",
+                                          "materials.bars.strength.friction_angle=31 deg"});
     const auto run = started(comm, scene);
     const double length = 0.1, spacing = scene.bodies[0].spacing;
     const Totals before = run->totals();
@@ -126,8 +131,10 @@ TEST(ColumnCollapse, RunsOutAsColumnsOfSandDo) {
     const Matter end(*run);
     std::vector<double> column(200, 0);  // heights, in strips of two spacings
     const double strip = 2 * spacing;
-    for (const double x : end.x) column[static_cast<std::size_t>(std::max(0.0, x) / strip)] += spacing * spacing / strip;
-    const auto thin = std::find_if(column.begin(), column.end(), [&](double h) { return h < 0.75 * spacing; });
+    for (const double x : end.x)
+        column[static_cast<std::size_t>(std::max(0.0, x) / strip)] += spacing * spacing / strip;
+    const auto thin =
+        std::find_if(column.begin(), column.end(), [&](double h) { return h < 0.75 * spacing; });
     const double run_out = strip * static_cast<double>(thin - column.begin()) / length - 1;
     const double height = (*std::max_element(end.y.begin(), end.y.end()) + spacing / 2) / length;
     const auto [least, greatest] = std::minmax_element(end.density.begin(), end.density.end());
@@ -135,7 +142,8 @@ TEST(ColumnCollapse, RunsOutAsColumnsOfSandDo) {
     for (std::size_t i = 0; i < end.u.size(); ++i) speed2 += end.u[i] * end.u[i] + end.v[i] * end.v[i];
     const double speed = std::sqrt(speed2 / static_cast<double>(end.u.size()));
     if (comm.is_root())
-        fmt::print("run-out {:.2f}, height {:.2f}, rms speed {:.4f} m/s, density {:.0f} to {:.0f}\n", run_out, height, speed, *least, *greatest);
+        fmt::print("run-out {:.2f}, height {:.2f}, rms speed {:.4f} m/s, density {:.0f} to {:.0f}\n", run_out,
+                   height, speed, *least, *greatest);
     EXPECT_GT(run_out, 2.4);
     EXPECT_LT(run_out, 3.6);
     EXPECT_GT(height, 0.8);

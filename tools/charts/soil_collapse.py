@@ -24,35 +24,35 @@ MODELS = {
 }
 
 
-def simulate(program, model, aspect, folder):
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
+def simulate(program, model, aspect, folder, settings=()):
+    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     out = pathlib.Path(folder) / f"{len(os.listdir(folder))}"
     length = (AREA / aspect) ** 0.5
     height = aspect * length
-    subprocess.run(["mpirun", "-n", "2", program, "run", TOP / "runs/column_collapse", "--quick", "--out", out,
+    subprocess.run([program, "run", TOP / "runs/column_collapse", "--quick", "--out", out,
                     "--set", MODELS[model], "--set", f"body[0].upper=[{length}, {height}]",
                     "--set", "body[1].upper=[1.2, 0]", "--set", f"body[2].upper=[0, {height + 0.02}]",
-                    "--set", f"run.end_time={4 * (height / 9.81) ** 0.5}"],
+                    "--set", f"run.end_time={4 * (height / 9.81) ** 0.5}", *settings],
                    check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=environment)
     return out, length, height
 
 
-def front(snapshot):
+def front(snapshot, spacing):
     """Where the deposit that hangs together ends: the first strip of two spacings with less than 3/4 of a layer."""
     x = snapshot["position"][snapshot["body"] == 0][:, 0]
-    strip = 2 * SPACING
-    heights = np.bincount(np.maximum(0, x / strip).astype(int)) * SPACING**2 / strip
-    thin = np.flatnonzero(heights < 0.75 * SPACING)
+    strip = 2 * spacing
+    heights = np.bincount(np.maximum(0, x / strip).astype(int)) * spacing**2 / strip
+    thin = np.flatnonzero(heights < 0.75 * spacing)
     return strip * (thin[0] if len(thin) else len(heights))
 
 
-def row_of(model, aspect, out, length, height):
+def row_of(model, aspect, out, length, height, spacing=SPACING):
     (files,) = snapshot_series(out).values()
     last, before = (read_snapshot(files[k][0]) for k in (-1, -2))
-    top = last["position"][last["body"] == 0][:, 1].max() + SPACING / 2
+    top = last["position"][last["body"] == 0][:, 1].max() + spacing / 2
     return {"model": model, "aspect": aspect, "length": length, "height": height,
-            "run_out": (front(last) - length) / length, "final_height": top / length,
-            "still_moving": (front(last) - front(before)) / length}
+            "run_out": (front(last, spacing) - length) / length, "final_height": top / length,
+            "still_moving": (front(last, spacing) - front(before, spacing)) / length}
 
 
 def measure(build):
@@ -70,5 +70,5 @@ def draw(rows, plt):
         mine = [row for row in rows if row["model"] == model]
         axes.loglog([row["aspect"] for row in mine], [row["run_out"] for row in mine], marker, color=colour, label=model)
     axes.set(xlabel="height / length of the column", ylabel="run-out / length of the column")
-    axes.legend()
+    axes.legend(fontsize=8)
     return figure
