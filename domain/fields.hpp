@@ -126,6 +126,11 @@ inline constexpr Field<float> flaw_exponent{
 inline constexpr Field<std::uint32_t> flaw_count{"flaw_count", "1",   scalar,
                                                  state,        owner, "number of flaws of the particle"};
 
+inline constexpr Field<double> plastic_volume_strain{
+    "plastic_volume_strain", "1", scalar, state, owner, "volume strain that soil keeps when unloaded"};
+inline constexpr Field<double> plastic_shear_strain{
+    "plastic_shear_strain", "1", scalar, state, owner, "accumulated plastic shear strain of soil"};
+
 inline constexpr Field<double> acceleration{"acceleration", "m s-2", vector,
                                             state,          owner,   "acceleration at the last evaluation"};
 inline constexpr Field<double> specific_power{

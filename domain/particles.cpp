@@ -36,13 +36,13 @@ void ParticleSet::add(const FieldInfo& info, int profile_size) {
     const int components =
         info.shape == Shape::profile ? profile_size : component_count(info.shape, dimension_);
     column.components.assign(static_cast<std::size_t>(components),
-                             std::vector<std::byte>(count * size_of(info.type)));
+                             StaggeredVector<std::byte>(count * size_of(info.type)));
     columns_.push_back(std::move(column));
 }
 
 namespace {
 /// Room to grow is a sixteenth, not as much again as std::vector takes.
-void resize_with_room(std::vector<std::byte>& values, std::size_t bytes) {
+void resize_with_room(StaggeredVector<std::byte>& values, std::size_t bytes) {
     if (bytes > values.capacity()) values.reserve(values.empty() ? bytes : bytes + bytes / 16);
     values.resize(bytes);
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "domain/column_storage.hpp"
 #include "domain/fields.hpp"
 
 namespace talus {
@@ -12,7 +13,7 @@ namespace talus {
 /// One field's values for all particles of a set: one contiguous array a component.
 struct Column {
     const FieldInfo* info;
-    std::vector<std::vector<std::byte>> components;
+    std::vector<StaggeredVector<std::byte>> components;
 
     std::size_t value_size() const { return size_of(info->type); }
 };
@@ -77,7 +78,7 @@ class ParticleSet {
     std::size_t size_ = 0;
     std::size_t halo_size_ = 0;
     std::vector<Column> columns_;
-    std::vector<std::byte> reorder_buffer_;
+    StaggeredVector<std::byte> reorder_buffer_;
 };
 
 /// Id of the first own particle with a rate or a state that is not finite, and the field's name; nullptr if

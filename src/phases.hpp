@@ -14,6 +14,7 @@ enum class Phase : unsigned char {
     gradients,
     forces,
     gravity,
+    pressure,
     material,
     motion,
     wait,
@@ -23,7 +24,7 @@ enum class Phase : unsigned char {
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Phase::count)> phase_names = {
     "decompose", "halo",     "density", "gradients",       "forces",
-    "gravity",   "material", "motion",  "wait for others", "output"};
+    "gravity",   "pressure", "material", "motion",  "wait for others", "output"};
 
 /// Wall time spent in each phase on this rank.
 class Phases {

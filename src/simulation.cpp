@@ -50,6 +50,15 @@ std::vector<NeededField> needed_fields(const Setup& setup) {
     if (has_strength(setup)) need("strength", {&field::deviatoric_stress, &field::predicted_stress});
     if (has_fracture(setup))
         need("fracture", {&field::damage, &field::flaw_threshold, &field::flaw_exponent, &field::flaw_count});
+    const auto any_plasticity = [&](auto&& asks) {
+        return std::any_of(setup.materials.begin(), setup.materials.end(), [&](const Material& material) {
+            return material.plasticity && std::visit(asks, *material.plasticity);
+        });
+    };
+    if (any_plasticity([](const auto& model) { return model.keeps_volume_strain(); }))
+        need("plastic volume strain", {&field::plastic_volume_strain});
+    if (any_plasticity([](const auto& model) { return model.softens(); }))
+        need("softening", {&field::plastic_shear_strain});
     return needed;
 }
 
@@ -62,7 +71,12 @@ Simulation::Simulation(const Communicator& comm, Setup setup, ParticleSet partic
       setup_(std::move(setup)),
       particles_(std::move(particles)),
       decomposition_(comm, setup_.partition) {
-    for (const Material& material : setup_.materials) shear_moduli_.push_back(material.shear_modulus);
+    for (std::size_t b = 0; b < setup_.materials.size(); ++b) {
+        constants_.shear_modulus.push_back(setup_.materials[b].shear_modulus);
+        const bool falls = !is_wall(b) && (setup_.held.empty() || !setup_.held[b]);
+        if (setup_.even_gravity)
+            constants_.gravity.push_back(falls ? *setup_.even_gravity : std::array<double, 3>{});
+    }
     if (setup_.gravity) gravity_.emplace(comm_, *setup_.gravity, setup_.sph);
     decomposition_.expect(particles_);
     const auto h = std::as_const(particles_).own(field::smoothing_length);
@@ -121,7 +135,7 @@ void Simulation::soften_materials() {
     in_late_phase_ = true;
     for (std::size_t b = 0; b < setup_.materials.size(); ++b) {
         setup_.materials[b] = softened(setup_.materials[b], setup_.late_phase->stiffness);
-        shear_moduli_[b] = setup_.materials[b].shear_modulus;
+        constants_.shear_modulus[b] = setup_.materials[b].shear_modulus;
     }
 }
 
@@ -147,7 +161,8 @@ void Simulation::resume(double time, double time_step, std::uint64_t step, bool 
 void Simulation::step() {
     const double dt = time_step_;
     phases_.enter(Phase::motion);
-    sph::kick(particles_, shear_moduli_, setup_.sph, dt / 2);
+    sph::kick(particles_, constants_, setup_.sph, dt / 2);
+    sph::move_walls(particles_, walls_at(time_ + dt / 2));
     sph::drift(particles_, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
@@ -155,7 +170,7 @@ void Simulation::step() {
     arrange();
     evaluate(dt / 2, dt);
     phases_.enter(Phase::motion);
-    sph::kick(particles_, shear_moduli_, setup_.sph, dt / 2);
+    sph::kick(particles_, constants_, setup_.sph, dt / 2);
     time_ += dt;
     ++step_;
     conclude_step();
@@ -165,7 +180,7 @@ void Simulation::step() {
 
 /// Everything that follows from positions and the predicted state: density, pressure, gradients, forces. Each
 /// pass first visits the cells that need no copies, while those are on their way.
-void Simulation::evaluate(double time_ahead, double damage_time) {
+void Simulation::evaluate(double time_ahead, double elapsed) {
     const sph::Settings& settings = setup_.sph;
     const CellTable& table = decomposition_.table();
     Halo& halo = decomposition_.halo();
@@ -174,7 +189,7 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     };
 
     phases_.enter(Phase::motion);
-    sph::predict(particles_, shear_moduli_, setup_.sph, time_ahead);
+    sph::predict(particles_, constants_, setup_.sph, time_ahead);
     if (settings.density == sph::DensityMethod::summation || settings.variable_smoothing_length) {
         refreshed(Phase::density, {&field::position, &field::mass},
                   [&](Cells cells) { sph::density_pass(particles_, table, cells, settings); });
@@ -186,7 +201,9 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
         }
     }
     phases_.enter(Phase::material);
-    material_response(damage_time);
+    material_response(time_ahead, elapsed);
+    const std::vector<sph::WallNow> walls = walls_at(time_ + elapsed);
+    if (!walls.empty()) extrapolate_into_walls(walls);
     if (particles_.has(field::velocity_gradient))
         refreshed(Phase::gradients,
                   {&field::position, &field::mass, &field::smoothing_length, &field::body,
@@ -218,13 +235,14 @@ void Simulation::evaluate(double time_ahead, double damage_time) {
     for (std::size_t k = 0; k < cells.size(); ++k)
         pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);
     hold_bodies();
+    sph::keep_walls(particles_, walls);
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
 }
 
-/// Pressure and sound speed, the limit of strength, growth of damage over `damage_time`, and what damage
-/// leaves of tension and shear.
-void Simulation::material_response(double damage_time) {
+/// Pressure and sound speed, the limit of strength or the return of plastic stress, growth of damage over the
+/// `elapsed` time since the last evaluation, and what damage leaves of tension and shear.
+void Simulation::material_response(double time_ahead, double elapsed) {
     damage_limit_ = std::numeric_limits<double>::infinity();
     const auto bodies = std::as_const(particles_).own(field::body);
     const auto energy = std::as_const(particles_).own(field::predicted_energy);
@@ -240,7 +258,8 @@ void Simulation::material_response(double damage_time) {
         if (std::isfinite(material.least_pressure))
             for (std::size_t i = 0; i < pressure.size(); ++i)
                 if (bodies[i] == body) pressure[i] = std::max(pressure[i], material.least_pressure);
-        if (material.shear_modulus > 0) {
+        if (material.plasticity) return_plastic_stress(body, time_ahead, elapsed);
+        if (material.shear_modulus > 0 && !material.plasticity) {
             const StrengthState state{pressure, energy, damage};
             limit_stress(material.strength, state, stress_columns(particles_, field::predicted_stress),
                          bodies, body);
@@ -255,12 +274,54 @@ void Simulation::material_response(double damage_time) {
                                   particles_.own(field::smoothing_length),
                                   setup_.sph.kernel_support()};
         const CrackGrowth growth = material.crack_growth();
-        grow_damage(growth, state, damage_time, particles_.own(field::damage), bodies, body);
+        grow_damage(growth, state, elapsed, particles_.own(field::damage), bodies, body);
         damage_limit_ = std::min(
             damage_limit_, damage_time_step(growth, state, setup_.largest_damage_step, damage, bodies, body));
         relieve_stress(material.strength, damage, pressure,
                        stress_columns(particles_, field::predicted_stress), bodies, body);
     }
+}
+
+/// Plastic strains are those of the stored state; the predicted one is `time_ahead` of it.
+void Simulation::return_plastic_stress(std::uint8_t body, double time_ahead, double elapsed) {
+    const Material& material = setup_.materials[body];
+    const auto bodies = std::as_const(particles_).own(field::body);
+    const auto [opens, softens] = std::visit(
+        [](const auto& model) {
+            return std::pair{model.keeps_volume_strain(), model.softens()};
+        },
+        *material.plasticity);
+    std::span<double> volume_strain, shear_strain;
+    if (opens) volume_strain = particles_.own(field::plastic_volume_strain);
+    if (softens) shear_strain = particles_.own(field::plastic_shear_strain);
+    const PlasticState stored{particles_.own(field::density),
+                              stress_columns(particles_, field::deviatoric_stress), volume_strain,
+                              shear_strain},
+        predicted{particles_.own(field::predicted_density),
+                  stress_columns(particles_, field::predicted_stress), volume_strain, shear_strain};
+    return_stress(*material.plasticity, material.elasticity(), stored, elapsed, true, {}, bodies, body);
+    return_stress(*material.plasticity, material.elasticity(), predicted, elapsed + time_ahead, false,
+                  particles_.own(field::pressure), bodies, body);
+}
+
+std::vector<sph::WallNow> Simulation::walls_at(double time) const {
+    const auto g = setup_.even_gravity.value_or(std::array<double, 3>{});
+    std::vector<sph::WallNow> walls(setup_.walls.size());
+    for (std::size_t b = 0; b < walls.size(); ++b)
+        if (setup_.walls[b]) walls[b] = sph::at_time(*setup_.walls[b], time, {g[0], g[1], g[2]});
+    return walls;
+}
+
+/// Wall particles take what is in front of them, whose copies they need, before copies of theirs are made.
+void Simulation::extrapolate_into_walls(std::span<const sph::WallNow> walls) {
+    phases_.enter(Phase::halo);
+    Halo& halo = decomposition_.halo();
+    halo.begin(particles_,
+               {&field::position, &field::smoothing_length, &field::body, &field::predicted_velocity,
+                &field::predicted_density, &field::pressure, &field::predicted_stress});
+    halo.finish();
+    phases_.enter(Phase::gradients);
+    sph::wall_pass(particles_, decomposition_.table(), Cells::all, setup_.sph, walls);
 }
 
 void Simulation::hold_bodies() {
@@ -282,7 +343,7 @@ void Simulation::hold_bodies() {
 
 /// Agrees on the next time step, and that the state is finite: one reduction for both.
 void Simulation::conclude_step() {
-    limit_ = sph::stable_time_step(particles_, shear_moduli_, setup_.sph);
+    limit_ = sph::stable_time_step(particles_, constants_, setup_.sph);
     if (damage_limit_ < limit_.time_step) limit_ = {damage_limit_, limit_.id, "damage growth"};
     if (gravity_) {
         const sph::StepLimit by_gravity = gravity::stable_time_step(particles_, *setup_.gravity);

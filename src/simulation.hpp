@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "physics/sph/motion.hpp"
 #include "physics/sph/passes.hpp"
 #include "physics/sph/settings.hpp"
+#include "physics/sph/walls.hpp"
 #include "src/phases.hpp"
 #include "src/varying_grid.hpp"
 
@@ -26,9 +28,11 @@ namespace talus {
 struct Setup {
     Box box;
     sph::Settings sph;
-    std::optional<gravity::Settings> gravity;  ///< none: no self-gravity
-    std::vector<Material> materials;           ///< one a body, in order
-    std::vector<bool> held;                    ///< one a body: its particles never move; empty: none
+    std::optional<gravity::Settings> gravity;           ///< none: no self-gravity
+    std::vector<Material> materials;                    ///< one a body, in order
+    std::vector<bool> held;                             ///< one a body: its particles never move; empty: none
+    std::vector<std::optional<sph::Wall>> walls;        ///< one a body: it is a wall; empty: none is
+    std::optional<std::array<double, 3>> even_gravity;  ///< acceleration, the same everywhere [m/s2]
     PartitionMethod partition = PartitionMethod::cheapest;
     double largest_damage_step = 0.1;  ///< D^(1/3) may grow by this much a step [1]
     double first_time_step = std::numeric_limits<double>::infinity();  ///< cap of the first step [s]
@@ -54,7 +58,7 @@ struct Totals {
     std::array<double, 3> momentum, angular_momentum;
     double greatest_speed, least_density, greatest_density, least_pressure, greatest_pressure, mean_damage;
     std::uint64_t particles;
-    double potential_energy = 0;  ///< of self-gravity [J]
+    double potential_energy = 0;  ///< of self-gravity or in even gravity, from the origin [J]
     double gravity_drift =
         0;  ///< sum of all gravity forces over the sum of their sizes, of rounding and tree [1]
 
@@ -122,16 +126,20 @@ class Simulation {
     double range_of_interaction() const;
     void arrange();
     void rebalance();
-    void evaluate(double time_ahead, double damage_time);
-    void material_response(double damage_time);
+    void evaluate(double time_ahead, double elapsed);
+    void material_response(double time_ahead, double elapsed);
     void hold_bodies();
+    void return_plastic_stress(std::uint8_t body, double time_ahead, double elapsed);
+    std::vector<sph::WallNow> walls_at(double time) const;
+    void extrapolate_into_walls(std::span<const sph::WallNow> walls);
+    bool is_wall(std::size_t body) const { return !setup_.walls.empty() && setup_.walls[body]; }
     void soften_materials();
     void enter_late_phase_when_due();
     void conclude_step();
 
     const Communicator& comm_;
     Setup setup_;
-    std::vector<double> shear_moduli_;
+    sph::BodyConstants constants_;
     ParticleSet particles_;
     Decomposition decomposition_;
     std::optional<gravity::Gravity> gravity_;

@@ -56,6 +56,10 @@ Totals Simulation::totals() const {
         sums[ly].add(x[2] * p[0] - x[0] * p[2]);
         sums[lz].add(x[0] * p[1] - x[1] * p[0]);
         if (damage) sums[damage_sum].add(m[i] * damage[i]);
+        if (setup_.even_gravity && !is_wall(particles_.data(field::body)[i])) {
+            const std::array<double, 3>& g = *setup_.even_gravity;
+            sums[potential].add(-m[i] * (g[0] * x[0] + g[1] * x[1] + g[2] * x[2]));
+        }
         if (phi) {
             sums[potential].add(0.5 * m[i] * phi[i]);
             double size2 = 0;

@@ -64,8 +64,10 @@ def draw_maps(out, title, folder, save):
     ground = Map(ground)
     elevation = np.where(np.isfinite(ground.values), ground.values, np.nanmin(ground.values))
     shade = LightSource(315, 45).hillshade(elevation[::-1], dx=ground.cell[0], dy=ground.cell[1])[::-1]
-    figure, axes = plt.subplots(1, len(maps), figsize=(5 * len(maps), 5.5), layout="constrained")
     limits = window(maps[0])
+    is_wide = np.ptp(limits[0]) > 1.4 * np.ptp(limits[1])
+    shape, size = ((len(maps), 1), (9, 3.6 * len(maps))) if is_wide else ((1, len(maps)), (5 * len(maps), 5.5))
+    figure, axes = plt.subplots(*shape, figsize=size, layout="constrained")
     for panel, one, (_, label, colours) in zip(axes, maps, found):
         panel.imshow(shade, cmap="gray", origin="lower", extent=ground.extent, vmin=-0.3, vmax=1.2)
         top = np.nanpercentile(one.values, 99)

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "domain/box.hpp"
+#include "domain/column_storage.hpp"
 #include "domain/particles.hpp"
 #include "physics/dem/force_sum.hpp"
 #include "physics/dem/vector3.hpp"
@@ -40,8 +41,8 @@ void predict_half_step(ParticleSet& grains, double time_step);
 
 /// What turns a grain's sums of forces into its acceleration, made anew with the order of grains.
 struct Responses {
-    std::vector<double> acceleration;          ///< of one unit of force [m s-2]; 0: the grain is held
-    std::array<std::vector<double>, 3> start;  ///< where each grain was at the time [m]
+    StaggeredVector<double> acceleration;          ///< of one unit of force [m s-2]; 0: the grain is held
+    std::array<StaggeredVector<double>, 3> start;  ///< where each grain was at the time [m]
 };
 
 /// Velocity that grains which are not held are given besides that of forces: `acceleration` times either

@@ -92,7 +92,7 @@ void Shear::move_copies(GrainRows& rows) const {
 /// Two grains at r at the list that moved with the flow would now be at A r, A = 1 + g e_x e_y with the shear
 /// g since then, |A r| >= |r| / (1 + |g|): nearer by at most |r| |g| / (1 + |g|). What each moved besides
 /// adds.
-double Shear::moved2(const ParticleSet& grains, const std::array<std::vector<double>, 3>& start,
+double Shear::moved2(const ParticleSet& grains, const std::array<StaggeredVector<double>, 3>& start,
                      double listed) const {
     const double sheared = static_cast<double>(step_ + 1 - listed_step_) * advance_ / length_y_;
     double most2 = 0;

@@ -52,7 +52,7 @@ class Shear {
     /// Square of a distance of which twice is the most that the gap of two grains can have shrunk from the
     /// list to the end of the next step [m2]. `start`: positions at the time of the list; `listed`: greatest
     /// distance of centres up to which pairs were listed [m].
-    double moved2(const ParticleSet& grains, const std::array<std::vector<double>, 3>& start,
+    double moved2(const ParticleSet& grains, const std::array<StaggeredVector<double>, 3>& start,
                   double listed) const;
 
   private:

@@ -68,6 +68,10 @@ ContactLoad<double> load_of(const Law& law, const ContactKinematics<double>& k,
     return load;
 }
 
+/// Whether a grain's centre came through the surface in the last step: it is behind it, or nearer to it than
+/// it has moved away from it since, so that it was behind a sheet with two sides.
+bool has_passed(double distance, double moved_away) { return distance <= 0 || distance < moved_away; }
+
 }  // namespace
 
 Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable& laws,
@@ -98,7 +102,8 @@ Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable&
                     torque_about_centre(k.normal, contact_arm(radius, contact.overlap), load);
                 const bool force_fits = add_in_units(load.force, g.units_per_force, sum.force);
                 const bool torque_fits = add_in_units(torque, g.units_per_force / radius, sum.torque);
-                const bool behind = !(contact.overlap < radius);
+                const double departure = dot(k.normal, g.grain.velocity - contact.wall_velocity);
+                const bool behind = has_passed(radius - contact.overlap, departure * evaluation.time_step);
                 if ((behind || !force_fits || !torque_fits) && !overload.found)
                     overload = {true, near.grain, near.wall, behind};
             }

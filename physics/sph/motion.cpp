@@ -43,7 +43,7 @@ double least_density(double mass, double range) {
 
 /// Writes the state moved by `time` into the given fields, which may be those of the state itself.
 template <int D>
-void advance(ParticleSet& particles, std::span<const double> shear_moduli, double kernel_support, double time,
+void advance(ParticleSet& particles, const BodyConstants& bodies, double kernel_support, double time,
              const Field<double>& to_velocity, const Field<double>& to_energy,
              const Field<double>& to_density, const Field<double>& to_stress) {
     const auto v = components<D>(particles, field::velocity),
@@ -55,6 +55,8 @@ void advance(ParticleSet& particles, std::span<const double> shear_moduli, doubl
     const bool has_gravity = particles.has(field::gravity_acceleration);
     std::array<const double*, D> g{};
     if (has_gravity) g = components<D>(particles, field::gravity_acceleration);
+    const bool falls = !bodies.gravity.empty();
+    const std::uint8_t* body = particles.data(field::body);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         std::array<double, D> v_i, a_i, total_i;
         for (int d = 0; d < D; ++d) {
@@ -62,6 +64,8 @@ void advance(ParticleSet& particles, std::span<const double> shear_moduli, doubl
             a_i[d] = a[d][i];
             total_i[d] = has_gravity ? a_i[d] + g[d][i] : a_i[d];
         }
+        if (falls)
+            for (int d = 0; d < D; ++d) total_i[d] += bodies.gravity[body[i]][d];
         new_energy[i] = advanced_energy<D>(energy[i], power[i], v_i, a_i, total_i, time);
         for (int d = 0; d < D; ++d) new_v[d][i] = v_i[d] + time * total_i[d];
     }
@@ -79,33 +83,29 @@ void advance(ParticleSet& particles, std::span<const double> shear_moduli, doubl
     constexpr int N = symmetric_count<D>;
     const auto stress = components<N>(particles, field::deviatoric_stress);
     const auto new_stress = components_to_write<N>(particles, to_stress);
-    const std::uint8_t* body = particles.data(field::body);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         std::array<double, N> s_i;
         std::array<double, D * D> gradient_i;
         for (int c = 0; c < N; ++c) s_i[c] = stress[c][i];
         for (int c = 0; c < D * D; ++c) gradient_i[c] = gradient[c][i];
-        const auto advanced = advanced_stress<D>(s_i, gradient_i, shear_moduli[body[i]], time);
+        const auto advanced = advanced_stress<D>(s_i, gradient_i, bodies.shear_modulus[body[i]], time);
         for (int c = 0; c < N; ++c) new_stress[c][i] = advanced[c];
     }
 }
 
 }  // namespace
 
-void kick(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
-          double time) {
+void kick(ParticleSet& particles, const BodyConstants& bodies, const Settings& settings, double time) {
     with_dimension(particles, [&](auto dimension) {
-        advance<dimension>(particles, shear_moduli, settings.kernel_support(), time, field::velocity,
+        advance<dimension>(particles, bodies, settings.kernel_support(), time, field::velocity,
                            field::internal_energy, field::density, field::deviatoric_stress);
     });
 }
 
-void predict(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
-             double time) {
+void predict(ParticleSet& particles, const BodyConstants& bodies, const Settings& settings, double time) {
     with_dimension(particles, [&](auto dimension) {
-        advance<dimension>(particles, shear_moduli, settings.kernel_support(), time,
-                           field::predicted_velocity, field::predicted_energy, field::predicted_density,
-                           field::predicted_stress);
+        advance<dimension>(particles, bodies, settings.kernel_support(), time, field::predicted_velocity,
+                           field::predicted_energy, field::predicted_density, field::predicted_stress);
     });
 }
 
@@ -120,8 +120,7 @@ void drift(ParticleSet& particles, double time) {
 namespace {
 
 template <int D>
-StepLimit stable_step(const ParticleSet& particles, std::span<const double> shear_moduli,
-                      const Settings& settings) {
+StepLimit stable_step(const ParticleSet& particles, const BodyConstants& bodies, const Settings& settings) {
     const double* c = particles.data(field::sound_speed);
     const double* density = particles.data(field::predicted_density);
     const double* h = particles.data(field::smoothing_length);
@@ -137,7 +136,8 @@ StepLimit stable_step(const ParticleSet& particles, std::span<const double> shea
     for (std::size_t i = 0; i < particles.size(); ++i) {
         double acceleration2 = 0;
         for (int d = 0; d < D; ++d) acceleration2 += a[d][i] * a[d][i];
-        const double elastic = shear_moduli[body[i]] > 0 ? 4.0 / 3 * shear_moduli[body[i]] / density[i] : 0;
+        const double modulus = bodies.shear_modulus[body[i]];
+        const double elastic = modulus > 0 ? 4.0 / 3 * modulus / density[i] : 0;
         const double speed = std::sqrt(c[i] * c[i] + elastic) + (viscous_speed ? 0.6 * viscous_speed[i] : 0) +
                              (has_gradient ? h[i] * std::abs(divergence<D>(gradient, i)) : 0);
         const double by_speed = h[i] / speed, by_acceleration = std::sqrt(h[i] / std::sqrt(acceleration2));
@@ -158,12 +158,11 @@ StepLimit stable_step(const ParticleSet& particles, std::span<const double> shea
 
 }  // namespace
 
-StepLimit stable_time_step(const ParticleSet& particles, std::span<const double> shear_moduli,
+StepLimit stable_time_step(const ParticleSet& particles, const BodyConstants& bodies,
                            const Settings& settings) {
     StepLimit limit{};
-    with_dimension(particles, [&](auto dimension) {
-        limit = stable_step<dimension>(particles, shear_moduli, settings);
-    });
+    with_dimension(particles,
+                   [&](auto dimension) { limit = stable_step<dimension>(particles, bodies, settings); });
     return limit;
 }
 

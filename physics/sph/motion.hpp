@@ -1,5 +1,6 @@
 #pragma once
-#include <span>
+#include <array>
+#include <vector>
 
 #include "domain/particles.hpp"
 #include "physics/sph/settings.hpp"
@@ -12,16 +13,20 @@ namespace talus::sph {
 /// pair forces, which sums to zero over all particles: total energy is conserved to rounding. Fields that a
 /// set does not have (density when summed, stress in fluids) are left out.
 
-/// Moves the state `time` forward with the rates of the last evaluation. `shear_moduli`: one a body [Pa].
-void kick(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
-          double time);
+/// What differs from body to body, one each.
+struct BodyConstants {
+    std::vector<double> shear_modulus;           ///< [Pa]
+    std::vector<std::array<double, 3>> gravity;  ///< acceleration, the same everywhere [m/s2]; empty: none
+};
+
+/// Moves the state `time` forward with the rates of the last evaluation.
+void kick(ParticleSet& particles, const BodyConstants& bodies, const Settings& settings, double time);
 
 /// Positions: x += v time.
 void drift(ParticleSet& particles, double time);
 
 /// Fills the predicted fields with the state moved `time` forward by the rates of the last evaluation.
-void predict(ParticleSet& particles, std::span<const double> shear_moduli, const Settings& settings,
-             double time);
+void predict(ParticleSet& particles, const BodyConstants& bodies, const Settings& settings, double time);
 
 /// What limits the time step, for messages.
 struct StepLimit {
@@ -34,7 +39,7 @@ struct StepLimit {
 /// dt = C h/(c_l + 0.6 max(alpha c - 2 beta mu) + h |div v|), the second term (standard SPH only) from the
 /// slope of the viscosity over approaching partners, and the acceleration's, dt = C sqrt(h/|a|). J. J.
 /// Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, section 10.3.
-StepLimit stable_time_step(const ParticleSet& particles, std::span<const double> shear_moduli,
+StepLimit stable_time_step(const ParticleSet& particles, const BodyConstants& bodies,
                            const Settings& settings);
 
 }  // namespace talus::sph

@@ -6,6 +6,7 @@
 #include "src/run/commands.hpp"
 #include "src/run/depth_evolution.hpp"
 #include "src/run/grain_evolution.hpp"
+#include "src/run/soil_evolution.hpp"
 #include "src/run/sph_evolution.hpp"
 
 namespace talus {
@@ -23,6 +24,7 @@ bool any_scene(const Scene&) { return true; }
 constexpr std::array all_families = {
     Family{is_depth_scene, read<DepthEvolution>, check_depth_scene},
     Family{is_grain_scene, read<GrainEvolution>, check_grain_scene},
+    Family{is_soil_scene, read<SoilEvolution>, check_soil_scene},
     Family{any_scene, read<SphEvolution>, check_sph_scene},
 };
 

@@ -24,4 +24,7 @@ int check_grain_scene(const Communicator& comm, const Scene& scene);
 /// The same of depth-integrated flows. Collective.
 int check_depth_scene(const Communicator& comm, const Scene& scene);
 
+/// The same of soil. Collective.
+int check_soil_scene(const Communicator& comm, const Scene& scene);
+
 }  // namespace talus

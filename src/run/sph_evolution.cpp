@@ -75,7 +75,8 @@ std::vector<SnapshotField> SphEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::mass, &field::internal_energy, &field::smoothing_length, &field::body,
-             &field::pressure, &field::sound_speed, &field::deviatoric_stress, &field::damage})
+             &field::pressure, &field::sound_speed, &field::deviatoric_stress, &field::damage,
+             &field::plastic_volume_strain, &field::plastic_shear_strain})
         if (particles.has(*info)) fields.push_back({.field = info});
     fields.push_back({.field = particles.has(field::density) ? &field::density : &field::predicted_density,
                       .name = snapshot_name(field::density)});
@@ -103,10 +104,9 @@ std::vector<CsvColumn> SphEvolution::diagnostics_columns() const {
         {"greatest_pressure", "Pa"},
         {"mean_damage", "1"},
     };
-    if (setup_.simulation.gravity) {
-        columns.push_back({"potential_energy", "J"});
-        columns.push_back({"gravity_drift", "1"});
-    }
+    const bool attracts = setup_.simulation.gravity.has_value();
+    if (attracts || setup_.simulation.even_gravity) columns.push_back({"potential_energy", "J"});
+    if (attracts) columns.push_back({"gravity_drift", "1"});
     return columns;
 }
 
@@ -130,7 +130,9 @@ Diagnostics SphEvolution::diagnostics() {
                                t.least_pressure,
                                t.greatest_pressure,
                                t.mean_damage};
-    if (simulation_->gravity_counts()) row.insert(row.end(), {t.potential_energy, t.gravity_drift});
+    const bool attracts = setup_.simulation.gravity.has_value();
+    if (attracts || setup_.simulation.even_gravity) row.push_back(t.potential_energy);
+    if (attracts) row.push_back(t.gravity_drift);
     return {row, t.total_energy()};
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace talus {
 
 namespace {
@@ -34,6 +37,21 @@ void warn_of_spin(const Body& body, const Material& material, double gravitation
                     body.name, rotation_period(spin) / 3600, body.density, rotation_period(limit) / 3600));
 }
 
+/// Matter near a wall that is thinner than forces reach misses partners.
+void warn_of_thin_wall(const Body& wall, const sph::Settings& sph, int dimension,
+                       std::vector<std::string>& found) {
+    const BoxShape around = bounds(wall.shape, dimension);
+    double thickness = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+        thickness = std::min(thickness, around.upper[a] - around.lower[a]);
+    const double range = sph.force_support() * sph.eta * wall.spacing;
+    if (thickness > 0.9 * range) return;
+    found.push_back(
+        fmt::format("body '{}' is a wall {:.3g} m thick, and forces reach {:.3g} m: what lies on it "
+                    "will sink in",
+                    wall.name, thickness, range));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const SceneSetup& setup) {
@@ -43,6 +61,8 @@ std::vector<std::string> warnings(const SceneSetup& setup) {
     for (std::size_t b = 0; b < setup.bodies.size(); ++b)
         warn_of_spin(setup.bodies[b], simulation.materials[b], setup.gravitational_constant, found);
     const sph::Settings& sph = simulation.sph;
+    for (std::size_t b = 0; b < simulation.walls.size(); ++b)
+        if (simulation.walls[b]) warn_of_thin_wall(setup.bodies[b], sph, simulation.box.dimension, found);
     if (simulation.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5) {
         const auto [eta, cutoff] = sph::gaussian_defaults(3, false);
         found.push_back(fmt::format(

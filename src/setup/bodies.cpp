@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "domain/random.hpp"
+#include "src/setup/geostatic.hpp"
 
 namespace talus {
 
@@ -179,6 +180,9 @@ ParticleSet make_particles(const Communicator& comm, const std::vector<Body>& bo
             if (share_begin <= id && id < share_end)
                 put_particle(particles, next++, {id, index, x}, bodies[b], census[b], settings.eta);
         });
+        if (bodies[b].geostatic)
+            for (std::size_t i = next - (share_end - share_begin); i < next; ++i)
+                put_geostatic(particles, i, *bodies[b].geostatic, materials[b]);
         if (materials[b].fracture)
             draw_flaws(particles, *materials[b].fracture,
                        census[b].particle_volume * static_cast<double>(count), count, seed, index);

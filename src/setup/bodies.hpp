@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -43,6 +44,14 @@ struct RadialVelocity {
 using VelocityField =
     std::variant<std::monostate, SineVelocity, CantileverVelocity, StretchVelocity, RadialVelocity>;
 
+/// Stress at the start of matter that lies under a level surface.
+struct GeostaticStart {
+    Point up;              ///< unit vector against gravity
+    double weight;         ///< density times gravity [N/m3]
+    double surface;        ///< height of the surface along `up` [m]
+    double lateral_ratio;  ///< K0, horizontal over vertical stress [1]
+};
+
 /// A body of a scene, before it is made of particles.
 struct Body {
     std::string name;
@@ -56,8 +65,9 @@ struct Body {
     DensityProfile profile = DensityProfile::even;  ///< of a sphere
     double density = 0;                             ///< mean [kg/m3]
     double internal_energy = 0;                     ///< where the density is the mean [J/kg]
-    bool hydrostatic = false;  ///< internal energy in proportion to the density, else even
-    double damage = 0;         ///< [1]
+    bool hydrostatic = false;                 ///< internal energy in proportion to the density, else even
+    double damage = 0;                        ///< [1]
+    std::optional<GeostaticStart> geostatic;  ///< none: free of stress
 };
 
 /// What the particles of a body add up to.

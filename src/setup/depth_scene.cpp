@@ -52,7 +52,7 @@ depth::Settings read_settings(const Section& root, int dimension, const DepthSet
     settings.gravity = table.number("gravity", "m s-2", 9.81, positive);
     settings.density = table.number("density", "kg m-3", 1000.0, positive);
     settings.eta = table.number("eta", "1", dimension == 1 ? 1.6 : 1.3, {1, 4});
-    settings.viscosity = table.number("viscosity", "1", 1.0, not_negative);
+    settings.viscosity = table.number("viscosity", "1", by_level ? 2.0 : 1.0, not_negative);
     settings.courant = table.number("courant", "1", 0.4, {0, 1, true});
     settings.entrainment = table.number("entrainment", "m-1", 0.0, not_negative);
     if (fitted) settings.curvature = table.flag("curvature", true);

@@ -14,7 +14,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Range positive{0, infinity, true};
 
-/// Names of one kind are columns and entries of checkpoints.
+/// When a source or a sink acts, and how often.
 template <class Item>
 void read_times(const Section& table, Item& item) {
     constexpr std::int64_t usual_interval = 100;

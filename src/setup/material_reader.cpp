@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "src/setup/plasticity_reader.hpp"
+
 namespace talus {
 
 std::string read_shared_text(const Communicator& comm, const std::filesystem::path& file) {
@@ -53,8 +55,7 @@ double read_melt_energy(const Section& table) {
     return table.has("melt_energy") ? table.number("melt_energy", "J/kg", {}, positive) : never_melts;
 }
 
-Strength read_strength(const Section& table) {
-    const std::string kind = table.choice("kind", {"none", "von_mises", "lundborg"}, "none");
+Strength read_strength(const Section& table, const std::string& kind) {
     if (kind == "von_mises")
         return VonMises{.yield_stress = table.number("yield_stress", "Pa", {}, not_negative),
                         .melt_energy = read_melt_energy(table)};
@@ -71,21 +72,54 @@ Strength read_strength(const Section& table) {
     return NoStrengthLimit{};
 }
 
+/// Equation of state and shear modulus, or Young's modulus and Poisson's ratio of a linear solid.
+void read_elasticity(const Section& table, Material& material) {
+    const double density = material.reference_density;
+    if (!table.has("youngs_modulus")) {
+        material.eos = read_equation_of_state(table.section("equation_of_state"), density);
+        material.shear_modulus = table.number("shear_modulus", "Pa", 0.0, not_negative);
+        return;
+    }
+    for (const char* key : {"equation_of_state", "shear_modulus"})
+        if (table.has(key)) table.error(key, "follows from youngs_modulus and poisson_ratio: leave it out");
+    const double E = table.number("youngs_modulus", "Pa", {}, positive);
+    const double nu = table.number("poisson_ratio", "1", {}, {0, 0.499});
+    material.eos = LinearEquationOfState{.reference_density = density,
+                                         .sound_speed = std::sqrt(E / (3 * (1 - 2 * nu)) / density)};
+    material.shear_modulus = E / (2 * (1 + nu));
+}
+
+void read_strength_or_plasticity(const Section& table, int dimension, Material& material) {
+    const Section strength = table.section("strength");
+    if (!strength.exists()) return;
+    const std::string kind =
+        strength.choice("kind", {"none", "von_mises", "lundborg", "drucker_prager", "mu_i"}, "none");
+    if (!is_plasticity(kind)) {
+        material.strength = read_strength(strength, kind);
+        return;
+    }
+    material.plasticity = read_plasticity(strength, kind, dimension);
+    if (!std::holds_alternative<LinearEquationOfState>(material.eos))
+        table.error("strength",
+                    "soil needs a linear equation of state: give youngs_modulus and poisson_ratio");
+    for (const char* key : {"least_pressure", "fracture"})
+        if (table.has(key)) table.error(key, "does not go with soil, which has a tensile_strength");
+}
+
 }  // namespace
 
-Material read_material(const Section& table, const std::string& name) {
+Material read_material(const Section& table, const std::string& name, int dimension) {
     Material material;
     material.name = name;
     material.reference_density = table.number("density", "kg/m3", {}, positive);
-    material.eos = read_equation_of_state(table.section("equation_of_state"), material.reference_density);
-    material.shear_modulus = table.number("shear_modulus", "Pa", 0.0, not_negative);
+    read_elasticity(table, material);
     material.bulk_modulus = bulk_modulus(material.eos);
     if (table.has("least_pressure"))
         material.least_pressure =
             table.number("least_pressure", "Pa", {}, {-std::numeric_limits<double>::infinity(), 0});
-    const Section strength = table.section("strength");
-    if (strength.exists()) material.strength = read_strength(strength);
-    if (!std::holds_alternative<NoStrengthLimit>(material.strength) && material.shear_modulus == 0)
+    read_strength_or_plasticity(table, dimension, material);
+    const bool limited = !std::holds_alternative<NoStrengthLimit>(material.strength) || material.plasticity;
+    if (limited && material.shear_modulus == 0)
         table.error("strength", "needs a shear_modulus: only a solid bears shear");
     const Section fracture = table.section("fracture");
     if (fracture.exists()) {
@@ -100,11 +134,11 @@ Material read_material(const Section& table, const std::string& name) {
     return material;
 }
 
-Material find_material(const Communicator& comm, const Scene& scene, const Section& body) {
+Material find_material(const Communicator& comm, const Scene& scene, const Section& body, int dimension) {
     const std::string name = body.text("material");
     if (name.empty()) return {};
     const Section own = scene.root().section("materials").section(name);
-    if (own.exists()) return read_material(own, name);
+    if (own.exists()) return read_material(own, name, dimension);
 
     std::filesystem::path folder = std::filesystem::absolute(scene.file()).parent_path(), file;
     int found = 0;
@@ -123,7 +157,7 @@ Material find_material(const Communicator& comm, const Scene& scene, const Secti
         return {};
     }
     const Scene material_file = Scene::parse(read_shared_text(comm, file), file);
-    const Material material = read_material(material_file.root(), name);
+    const Material material = read_material(material_file.root(), name, dimension);
     material_file.finish();
     return material;
 }

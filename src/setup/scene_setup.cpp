@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "src/setup/body_reader.hpp"
+#include "src/setup/body_wall_reader.hpp"
+#include "src/setup/geostatic.hpp"
 #include "src/setup/gravity_reader.hpp"
 #include "src/setup/impact_reader.hpp"
 #include "src/setup/material_reader.hpp"
@@ -94,6 +96,15 @@ sph::Settings read_sph(const Section& table, int dimension, const std::vector<Ma
     return settings;
 }
 
+/// Gravity that is the same everywhere, [sph] gravity.
+std::optional<std::array<double, 3>> read_even_gravity(const Section& root, int dimension) {
+    const Section table = root.section("sph");
+    if (!table.has("gravity")) return {};
+    if (root.section("gravity").exists())
+        table.error("gravity", "the scene has self-gravity, [gravity]; it can have only one of them");
+    return read_point(table, "gravity", "m s-2", dimension);
+}
+
 std::optional<LatePhase> read_late_phase(const Section& root, const Setup& simulation) {
     const Section table = root.section("late_phase");
     if (!table.exists()) return {};
@@ -160,7 +171,7 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     if (plan) plan->gravitational_constant = setup.gravitational_constant;
     setup.bodies.reserve(tables.size());
     for (std::size_t b = 0; b < tables.size(); ++b) {
-        setup.simulation.materials.push_back(find_material(comm, scene, tables[b]));
+        setup.simulation.materials.push_back(find_material(comm, scene, tables[b], box.dimension));
         const BodyContext context{
             .comm = comm,
             .scene = scene,
@@ -172,9 +183,16 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
             .gravitational_constant = setup.simulation.gravity ? setup.simulation.gravity->constant : 0,
             .seed = setup.seed};
         setup.bodies.push_back(read_body(tables[b], setup.simulation.materials.back(), context));
+        setup.bodies.back().geostatic =
+            read_geostatic(tables[b], setup.simulation.materials.back(), setup.simulation.even_gravity,
+                           setup.bodies.back().shape, box.dimension);
+        setup.simulation.walls.push_back(read_body_wall(tables[b], box.dimension));
         setup.simulation.held.push_back(tables[b].flag("held", false));
     }
     if (scene.faulty()) return;  // sizes and spacings may not fit each other
+    auto& walls = setup.simulation.walls;
+    if (std::none_of(walls.begin(), walls.end(), [](const auto& wall) { return wall.has_value(); }))
+        walls.clear();
     setup.census = take_census(setup.bodies, box.dimension, setup.seed);
     refuse_empty_bodies(tables, setup);
     if (scene.faulty()) return;
@@ -194,14 +212,14 @@ double widest_open_spacing(const SceneSetup& setup) {
 }
 
 /// Solids in contact bear neither tension nor shear across it, unless they are said to be bonded; standard
-/// SPH knows bonded ones alone.
+/// SPH and walls know bonded ones alone.
 void read_contacts(const Section& root, SceneSetup& setup) {
     bool solid = false;
     for (const Material& material : setup.simulation.materials) solid |= material.shear_modulus > 0;
     if (setup.bodies.size() < 2) return;
     sph::Settings& sph = setup.simulation.sph;
     const Section table = root.section("sph");
-    if (!solid || sph.formulation == sph::Formulation::standard)
+    if (!solid || sph.formulation == sph::Formulation::standard || !setup.simulation.walls.empty())
         table.choice("contacts", {"bonded"}, "bonded");
     else
         sph.several_bodies =
@@ -219,6 +237,7 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
     setup.simulation.box = read_box(root.section("box"), dimension);
     setup.simulation.gravity = read_gravity(root, setup.simulation.box);
     if (setup.simulation.gravity) setup.gravitational_constant = setup.simulation.gravity->constant;
+    setup.simulation.even_gravity = read_even_gravity(root, dimension);
     read_bodies(comm, scene, setup);
     setup.simulation.sph =
         read_sph(root.section("sph"), dimension, setup.simulation.materials, widest_open_spacing(setup));

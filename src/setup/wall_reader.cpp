@@ -97,24 +97,6 @@ dem::WallShape read_sheet(const Section& table, const WallContext& context, cons
     return surface(any);
 }
 
-dem::WallMotion read_motion(const Section& table) {
-    dem::WallMotion motion;
-    if (!table.exists()) return motion;
-    motion.velocity = vector_of(origin_default(table, "velocity", "m/s", 3));
-    motion.amplitude = vector_of(origin_default(table, "amplitude", "m", 3));
-    if (norm(motion.amplitude) > 0)
-        motion.translation_oscillation.frequency = table.number("frequency", "Hz", {}, {0});
-    if (table.has("angular_velocity")) {
-        motion.angular_velocity = table.number("angular_velocity", "rad/s");
-        motion.centre = vector_of(origin_default(table, "centre", "m", 3));
-        motion.axis = read_direction(table, "axis");
-    }
-    motion.begin = table.number("begin", "s", 0.0);
-    if (table.has("end")) motion.end = table.number("end", "s");
-    if (motion.end < motion.begin) table.error("end", "must not be before begin");
-    return motion;
-}
-
 /// A wall that is not the same everywhere along a periodic axis would be met by grains inside the box and
 /// missed by their images.
 void refuse_in_periodic(const Section& table, const Box& box, const std::string& kind,
@@ -129,6 +111,24 @@ void refuse_in_periodic(const Section& table, const Box& box, const std::string&
 }
 
 }  // namespace
+
+dem::WallMotion read_motion(const Section& table, int dimension) {
+    dem::WallMotion motion;
+    if (!table.exists()) return motion;
+    motion.velocity = vector_of(origin_default(table, "velocity", "m/s", dimension));
+    motion.amplitude = vector_of(origin_default(table, "amplitude", "m", dimension));
+    if (norm(motion.amplitude) > 0)
+        motion.translation_oscillation.frequency = table.number("frequency", "Hz", {}, {0});
+    if (table.has("angular_velocity")) {
+        motion.angular_velocity = table.number("angular_velocity", "rad/s");
+        motion.centre = vector_of(origin_default(table, "centre", "m", dimension));
+        if (dimension == 3) motion.axis = read_direction(table, "axis");
+    }
+    motion.begin = table.number("begin", "s", 0.0);
+    if (table.has("end")) motion.end = table.number("end", "s");
+    if (motion.end < motion.begin) table.error("end", "must not be before begin");
+    return motion;
+}
 
 std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& laws,
                                   std::vector<std::string>& warnings) {
@@ -149,7 +149,7 @@ std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& la
             shape = read_sheet(table, context, name, warnings);
         else
             shape = read_plane(table, context.box);
-        const dem::WallMotion motion = read_motion(table.section("motion"));
+        const dem::WallMotion motion = read_motion(table.section("motion"), 3);
         refuse_in_periodic(table, context.box, kind, motion);
         walls.push_back({name, laws.material(table), shape, motion});
     }

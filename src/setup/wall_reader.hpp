@@ -22,4 +22,7 @@ struct WallContext {
 std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& laws,
                                   std::vector<std::string>& warnings);
 
+/// The table [motion] of a wall in that many dimensions; at rest if it is not there.
+dem::WallMotion read_motion(const Section& table, int dimension);
+
 }  // namespace talus

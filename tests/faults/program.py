@@ -31,6 +31,28 @@ class BadInput(Case):
                      "--set", "gravity.theta=0.5")
         self.assert_fails(done, 2, r"gravity\.theta")
 
+    def test_soil_and_walls_that_cannot_be(self):
+        column = RUNS / "column_collapse"
+        strength = "materials.bars.strength."
+        for settings, patterns in (
+                ((strength + "friction_angle=95 deg", strength + "dilation_angle=-1"),
+                 (r"friction_angle.*less than 90 deg", r"dilation_angle.*from 0")),
+                ((strength + "friction_angle=30",), (r"friction_angle.*angles in degrees",)),
+                ((strength + "dilation_angle=25 deg",), (r"dilation_angle.*above the friction angle",)),
+                ((strength + "friction_angle=0",), (r"friction_angle.*bears no shear",)),
+                ((strength + "softening_strain=0",), (r"softening_strain",)),
+                (("materials.bars.poisson_ratio=0.5",), (r"poisson_ratio",)),
+                (("materials.bars.shear_modulus=1e6",), (r"shear_modulus.*leave it out",)),
+                ((strength + "kind=mu_i",), (r"friction_static", r"grain_diameter", r"friction_angle")),
+                (("body[2].normal=[0,0]",), (r"body\[2\]\.normal.*no direction",)),
+                (("body[1].held=true", "body[1].velocity=[1,0]"), (r"held.*does not go with wall", r"velocity.*motion")),
+                (("sph.contacts=frictionless",), (r"sph\.contacts.*bonded",))):
+            options = [option for setting in settings for option in ("--set", setting)]
+            self.assert_fails(talus("check", column, "--quick", *options, ranks=0), 2, *patterns)
+        text = (column / "scene.toml").read_text()
+        done = talus("check", self.scene(text.replace("gravity = ", "# gravity = ")), "--quick", ranks=0)
+        self.assert_fails(done, 2, r"body\[0\]\.geostatic.*needs sph\.gravity")
+
     def test_scenes_that_cannot_run(self):
         wave, tube = RUNS / "acoustic_wave", RUNS / "sod_tube"
         reach = r"scene\.toml:\d+: box\.upper = .*along x, where it is closed, shorter than the interaction radius"

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -102,6 +103,10 @@ TEST_P(SameBits, RunDoesSomething) {
     EXPECT_GT(run.pairs(), 5 * run.total_particles());
     EXPECT_GT(run.time(), 0);
     EXPECT_NE(before.greatest_pressure, after.greatest_pressure);
+    if (run.particles().has(field::plastic_shear_strain)) {
+        const auto strain = run.particles().own(field::plastic_shear_strain);
+        EXPECT_GT(*std::max_element(strain.begin(), strain.end()), 1e-4);
+    }
     if (run.particles().has(field::damage)) {
         EXPECT_GT(after.mean_damage, 1e-6);
     }
@@ -159,12 +164,12 @@ TEST_P(SameBits, AfterInterruption) {
 }
 
 std::string name_of(const testing::TestParamInfo<SmallScene (*)()>& scene) {
-    constexpr const char* names[] = {"Rock2D", "Gas3D", "Gravity3D", "Walls2D", "Wave1D"};
+    constexpr const char* names[] = {"Rock2D", "Gas3D", "Gravity3D", "Walls2D", "Wave1D", "Soil2D"};
     return names[scene.index];
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, SameBits,
                          testing::Values(rock_impact_2d, periodic_gas_3d, collapsing_gas_3d,
-                                         gas_between_walls_2d, standing_wave_1d),
+                                         gas_between_walls_2d, standing_wave_1d, soil_on_walls_2d),
                          name_of);
 
 }  // namespace

@@ -182,4 +182,43 @@ SmallScene standing_wave_1d() {
     return {"standing wave 1D", setup, std::move(particles)};
 }
 
+SmallScene soil_on_walls_2d() {
+    const double spacing = 0.01, density = 2000, height = 0.2;
+    Material sand{.name = "sand",
+                  .eos = LinearEquationOfState{.reference_density = density, .sound_speed = 50},
+                  .shear_modulus = 2e6,
+                  .bulk_modulus = density * 50 * 50,
+                  .reference_density = density};
+    DruckerPrager model{.peak = cone(ConeMatch::plane_strain, 50, 0.5, 0.1),
+                        .residual = cone(ConeMatch::plane_strain, 10, 0.4, 0)};
+    model.softening_strain = 1e-3;
+    sand.plasticity = model;
+    Setup setup;
+    setup.box.dimension = 2;
+    setup.sph = standard_sph();
+    setup.sph.density = sph::DensityMethod::continuity;
+    setup.sph.variable_smoothing_length = false;
+    setup.even_gravity = std::array<double, 3>{0, -9.81, 0};
+    setup.materials = {sand, sand, sand};
+    setup.walls.resize(3);
+    setup.walls[1] = sph::Wall{.slip = sph::WallSlip::no_slip, .normal = {}, .motion = {}};
+    setup.walls[1]->motion.amplitude = {1e-3, 0, 0};
+    setup.walls[1]->motion.translation_oscillation.frequency = 20;
+    setup.walls[2] = sph::Wall{.slip = sph::WallSlip::free_slip, .normal = {1, 0, 0}, .motion = {}};
+    ParticleSet particles("sph", 2);
+    add_fields(particles, setup);
+    append(particles, {{20, 20, 1}, {0, 0, 0}, spacing});
+    const std::size_t floor = append(particles, {{36, 4, 1}, {-4 * spacing, -4 * spacing, 0}, spacing});
+    const std::size_t back = append(particles, {{4, 24, 1}, {-4 * spacing, 0, 0}, spacing});
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const double depth = height - particles.data(field::position, 1)[i];
+        particles.data(field::mass)[i] = density * spacing * spacing;
+        particles.data(field::density)[i] = density * (1 + 9.81 * depth / (50 * 50));
+        particles.data(field::smoothing_length)[i] = 1.3 * spacing;
+        particles.data(field::body)[i] = i >= back ? 2 : i >= floor ? 1 : 0;
+        particles.data(field::velocity, 0)[i] = i < floor ? 0.3 * (1 - depth / height) : 0;
+    }
+    return {"soil on walls 2D", setup, std::move(particles)};
+}
+
 }  // namespace talus::test

@@ -258,4 +258,20 @@ TEST(BondedGrains, PulledApartItBreaksAtItsStrengthOrStopsTheRun) {
 }
 
 }  // namespace
+TEST(BondedGrains, OneThatIsNotFiniteStopsTheRun) {
+    const Communicator comm(MPI_COMM_SELF);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    try {
+        GrainSimulation run = pair_of(comm, plastic, {}, {0, 0, nan});
+        for (int k = 0; k < 3; ++k) run.step();
+        FAIL() << "no stop";
+    } catch (const AgreedError& error) {
+        const std::string what = error.what();
+        EXPECT_TRUE(what.find("angular_velocity of grain 1 is not finite") != std::string::npos ||
+                    what.find("the bond between grains 0 and 1 bears a force that is not finite") !=
+                        std::string::npos)
+            << what;
+    }
+}
+
 }  // namespace talus::test

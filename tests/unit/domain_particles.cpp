@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "domain/particles.hpp"
@@ -109,6 +111,18 @@ TEST(ParticleSet, ReorderMovesEveryStateColumnAndDropsTheHalo) {
     particles.reorder(again);
     ASSERT_EQ(particles.size(), 5u);
     EXPECT_EQ(particles.data(field::id)[4], 102u);
+}
+
+TEST(ParticleSet, LargeColumnsBeginAtDifferentPlacesOfTheirPages) {
+    ParticleSet particles = numbered(100000);
+    std::set<std::uintptr_t> places;
+    for (const Column& column : particles.columns())
+        for (const auto& component : column.components) {
+            const auto address = reinterpret_cast<std::uintptr_t>(component.data());
+            EXPECT_EQ(address % 64, 0u) << column.info->name;
+            places.insert(address % 4096);
+        }
+    EXPECT_GT(places.size(), 4u);  // of 8
 }
 
 }  // namespace

@@ -129,5 +129,26 @@ TEST(Clumps, ACloudKeepsWhatIsConserved) {
         EXPECT_NEAR(norm(state_of(run, 2 * k).position - state_of(run, 2 * k + 1).position), 0.008, 1e-15);
 }
 
+// A clump that moves no finite way stops the run by a sphere of its own.
+TEST(Clumps, OneThatIsNotFiniteStopsTheRun) {
+    const Communicator comm(MPI_COMM_SELF);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& [speed, angular_momentum] : {std::pair{nan, 0.0}, {0.0, nan}}) {
+        const GrainSetup setup = dumbbells(hard, 1e-6);
+        GrainSimulation run(
+            comm, setup,
+            clump_set(comm, setup,
+                      {{{}, {}, {}, {}}, {{0.1, 0, 0}, {0, speed, 0}, {}, {0, 0, angular_momentum}}}));
+        try {
+            run.start();
+            for (int k = 0; k < 3; ++k) run.step();
+            ADD_FAILURE() << "no stop";
+        } catch (const AgreedError& error) {
+            EXPECT_NE(std::string(error.what()).find("of grain 2 is not finite"), std::string::npos)
+                << error.what();
+        }
+    }
+}
+
 }  // namespace
 }  // namespace talus::test

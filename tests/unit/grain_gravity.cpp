@@ -139,5 +139,20 @@ TEST(GrainGravity, SpheresThatTouchAttractAsPoints) {
     }
 }
 
+TEST(GrainGravity, AGrainThatIsNotFiniteStopsTheRun) {
+    const Communicator comm(MPI_COMM_SELF);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    GrainSimulation run = attracted(
+        comm, 1, 4, {{{}, {}, {}, radius, density}, {{100, 0, 0}, {0, nan, 0}, {}, radius, density}});
+    try {
+        run.start();
+        for (int k = 0; k < 10; ++k) run.step();
+        FAIL() << "no stop";
+    } catch (const AgreedError& error) {
+        EXPECT_NE(std::string(error.what()).find("of grain 1 is not finite"), std::string::npos)
+            << error.what();
+    }
+}
+
 }  // namespace
 }  // namespace talus::test

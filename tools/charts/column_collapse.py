@@ -24,7 +24,7 @@ def simulate(program, aspect, folder):
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
     out = pathlib.Path(folder) / f"column_{aspect}"
     length = (AREA / aspect) ** 0.5
-    subprocess.run(["mpirun", "-n", "2", program, "run", TOP / "runs/column_collapse_grains", "--out", out,
+    subprocess.run(["mpirun", "--oversubscribe", "-n", "2", program, "run", TOP / "runs/column_collapse_grains", "--out", out,
                     "--set", f"wall[2].point=[{length}, 0, 0]",
                     "--set", f"grains[0].upper=[{length}, {WIDTH}, {LOOSE * aspect * length}]"],
                    check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=environment)
@@ -71,11 +71,17 @@ def lajeunesse(aspect):
     return np.where(aspect < 3, 1.8 * aspect, 1.9 * aspect ** (2 / 3))
 
 
+def staron(aspect):
+    """L. Staron, E. J. Hinch, J. Fluid Mech. 545 (2005) 1: discs in a plane, without side walls."""
+    return np.where(aspect < 2, 2.5 * aspect, 3.25 * aspect**0.7)
+
+
 def draw(rows, plt):
     figure, axes = plt.subplots(figsize=(6.2, 4.2), layout="constrained")
     aspect = np.geomspace(0.4, 10, 200)
     axes.loglog(aspect, lube(aspect), color="#888888", label="Lube et al. 2005")
     axes.loglog(aspect, lajeunesse(aspect), "--", color="#888888", label="Lajeunesse et al. 2005")
+    axes.loglog(aspect, staron(aspect), ":", color="#888888", label="Staron, Hinch 2005, discs")
     axes.loglog([row["aspect"] for row in rows], [row["run_out"] for row in rows], "o", color="#1f6fb2", label="grains")
     axes.set(xlabel="height / length of the column", ylabel="run-out / length of the column")
     axes.legend(fontsize=8)

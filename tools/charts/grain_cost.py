@@ -15,7 +15,7 @@ RATIOS = (1, 2, 5, 10, 20)
 SKINS = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)  # of the smallest radius
 ROUNDS = 2
 SMALLEST = 1e-3  # radius [m]
-FILLED = 0.15    # of the volume, before the grains fall
+FILLED = 0.3     # of the volume, before the grains fall
 WARM, STEPS = 40, 840
 STEP = 2e-5      # [s]; a quarter of what waves take to cross the smallest grain
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
@@ -27,10 +27,10 @@ upper = [{width}, {width}, {height}]
 density = 2500
 youngs_modulus = 1e7
 poisson_ratio = 0.3
-restitution = 0.5
+restitution = 0.2
 friction = 0.5
 [dem]
-gravity = [1.5, 0, -9.81]
+gravity = [0.3, 0, -2]
 time_step = {step}
 skin = {skin}
 [[grains]]
@@ -99,7 +99,7 @@ class Case:
         rows, width, height = grains(ratio)
         np.savetxt(self.folder / "grains.csv", rows, delimiter=",")
         (self.folder / "scene.toml").write_text(SCENE.format(width=width, height=height, step=STEP, skin=0.3 * SMALLEST))
-        self.settled = 2000 + int(1.3 * np.sqrt(2 * height / 9.81) / STEP)  # steps
+        self.settled = 4000 + int(2 * np.sqrt(2 * height / 2) / STEP)  # steps
         self.run(self.settled)
 
     def run(self, steps, *options):

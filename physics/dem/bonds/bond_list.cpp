@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "domain/grain_fields.hpp"
+#include "physics/dem/vectors.hpp"
 
 namespace talus::dem {
 
@@ -14,18 +15,7 @@ namespace {
 static_assert(bond_values == 3 + BeamBond::history_count);
 constexpr std::uint32_t nowhere = ~std::uint32_t{0};
 
-/// A vector field of grains and copies.
-class Vectors {
-  public:
-    Vectors(const ParticleSet& grains, const Field<double>& field)
-        : components_{grains.data(field, 0), grains.data(field, 1), grains.data(field, 2)} {}
-    Vector3<> operator[](std::size_t i) const {
-        return {components_[0][i], components_[1][i], components_[2][i]};
-    }
-
-  private:
-    std::array<const double*, 3> components_;
-};
+using GrainVectors = Vectors<const ParticleSet>;
 
 /// Where the grains and copies of each id are stored.
 class Places {
@@ -59,7 +49,7 @@ class Places {
 
   private:
     const ParticleSet& grains_;
-    Vectors positions_;
+    GrainVectors positions_;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> places_;
 };
 
@@ -100,7 +90,7 @@ void BondList::join(const ParticleSet& grains, const ContactList& near) {
     const std::uint8_t* body = grains.data(field::body);
     const double* radius = grains.data(field::radius);
     const std::uint64_t* id = grains.data(field::copied_id);
-    const Vectors positions(grains, field::position);
+    const GrainVectors positions(grains, field::position);
     for (std::size_t p = 0; p < near.size(); ++p) {
         const std::uint32_t i = near.first[p], j = near.second[p];
         std::size_t table = 0;
@@ -172,7 +162,7 @@ void BondList::mark_copies(std::size_t own, std::span<std::uint8_t> copies) cons
 BondFault BondList::evaluate(const Evaluation& evaluation, ParticleSet& grains) {
     BondFault fault;
     std::uint64_t* broken_of = grains.data(field::broken_bonds);
-    const Vectors velocities(grains, field::half_step_velocity),
+    const GrainVectors velocities(grains, field::half_step_velocity),
         spins(grains, field::half_step_angular_velocity);
     for (Bond& bond : bonds_) {
         if (bond.broken) continue;

@@ -7,26 +7,13 @@
 
 #include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
+#include "physics/dem/vectors.hpp"
 
 namespace talus::dem {
 
 namespace {
 
-/// A vector field, looked up once.
-class Vectors {
-  public:
-    Vectors(ParticleSet& grains, const Field<double>& field)
-        : x_(grains.data(field, 0)), y_(grains.data(field, 1)), z_(grains.data(field, 2)) {}
-    Vector3<> operator[](std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
-    void put(std::size_t i, const Vector3<>& v) const {
-        x_[i] = v.x;
-        y_[i] = v.y;
-        z_[i] = v.z;
-    }
-
-  private:
-    double *x_, *y_, *z_;
-};
+using GrainVectors = Vectors<ParticleSet>;
 
 /// What the spheres of a clump know of it.
 struct ClumpFields {
@@ -40,7 +27,7 @@ struct ClumpFields {
           orientation_vector(grains, field::orientation_vector),
           orientation_scalar(grains.data(field::orientation_scalar)) {}
 
-    Vectors position, centre, velocity, acceleration, angular_momentum, torque, orientation_vector;
+    GrainVectors position, centre, velocity, acceleration, angular_momentum, torque, orientation_vector;
     double* orientation_scalar;
 
     ClumpState state(std::size_t i) const {
@@ -122,7 +109,8 @@ struct Motion {
           turning(angular_velocity(state.angular_momentum, body.inertia(), axes)) {}
 
     Vector3<> velocity_at(const Vector3<>& arm) const { return velocity + cross(turning, axes.turned(arm)); }
-    void give(const Vectors& velocities, const Vectors& spins, std::size_t i, const Vector3<>& arm) const {
+    void give(const GrainVectors& velocities, const GrainVectors& spins, std::size_t i,
+              const Vector3<>& arm) const {
         spins.put(i, turning);
         velocities.put(i, velocity_at(arm));
     }
@@ -242,7 +230,7 @@ std::uint64_t ClumpMotion::find_spheres(const ParticleSet& grains) {
 void ClumpMotion::take_forces(ParticleSet& grains, std::span<const ForceSum> sums,
                               std::span<const double> units) const {
     const double* radius = grains.data(field::radius);
-    const Vectors sphere_force(grains, field::sphere_force), sphere_torque(grains, field::sphere_torque);
+    const GrainVectors sphere_force(grains, field::sphere_force), sphere_torque(grains, field::sphere_torque);
     for_each_sphere(grains, [&](std::size_t i, const ClumpBody&, std::size_t) {
         const auto vector = [](const std::int64_t* sum, double unit) {
             return Vector3<>{unit * static_cast<double>(sum[0]), unit * static_cast<double>(sum[1]),
@@ -257,7 +245,7 @@ double ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses,
                                 double kick_step, double time_step) const {
     if (!exists_) return 0;
     const ClumpFields clump(grains);
-    const Vectors sphere_force(grains, field::sphere_force), sphere_torque(grains, field::sphere_torque),
+    const GrainVectors sphere_force(grains, field::sphere_force), sphere_torque(grains, field::sphere_torque),
         sphere_velocity(grains, field::velocity), sphere_spin(grains, field::angular_velocity);
     const auto own = static_cast<std::uint32_t>(grains.size());
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;

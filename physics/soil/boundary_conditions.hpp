@@ -1,0 +1,78 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "domain/particles.hpp"
+#include "physics/soil/constitutive.hpp"
+#include "physics/soil/stencils.hpp"
+#include "physics/soil/time_factor.hpp"
+
+namespace talus::soil {
+
+/// Face of a body: 2 axis for the lower end of an axis, 2 axis + 1 for the upper one.
+using Face = int;
+constexpr int axis_of(Face face) { return face / 2; }
+constexpr double outward(Face face) { return face % 2 == 0 ? -1 : 1; }
+
+/// What holds on some nodes. Where nothing is said, faces are free of stress.
+struct BoundaryCondition {
+    enum class Kind : unsigned char { free_slip, velocity, traction, pore_pressure };
+    std::string name;
+    Kind kind = Kind::traction;
+    Face face = -1;                 ///< -1: no face, all nodes of a region (of velocities only)
+    std::array<bool, 3> held{};     ///< components of the velocity that are imposed
+    std::array<double, 3> value{};  ///< velocity [m/s], traction on the face or pore pressure [Pa]
+    TimeFactor factor;
+    std::array<double, 3> lower{}, upper{};  ///< where it holds [m]
+};
+
+/// How far beyond the edge of its region a condition holds, in spacings.
+constexpr double reach_beyond(BoundaryCondition::Kind kind) {
+    return 1e-3 + (kind == BoundaryCondition::Kind::traction ? 1 : 0);
+}
+
+/// A node on a face or with conditions.
+struct BoundaryNode {
+    std::uint32_t index;
+    std::uint8_t faces;        ///< as soil_field::faces
+    std::uint32_t conditions;  ///< as soil_field::conditions
+    /// Of the load of each condition: it is spread over a spacing to both sides of its edges, for no stress of
+    /// elements can balance what changes from node to node.
+    std::vector<double> shares;
+};
+
+/// Of a rank's own nodes.
+std::vector<BoundaryNode> list_boundary_nodes(const ParticleSet& particles, const Stencils& stencils,
+                                              std::span<const BoundaryCondition> conditions,
+                                              double spacing);
+
+/// Imposes velocities at `time` on nodes.
+void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                       std::span<const BoundaryCondition> conditions, double time);
+
+/// Imposes tractions of soil and water together at `time` on the faces that nodes lie on, 0 where nothing else is said. Of the velocity
+/// and the traction along one axis only one can be imposed on a face: the velocity goes first.
+void impose_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                      std::span<const BoundaryCondition> conditions, double time);
+
+/// Imposes pore pressures at `time`; returns the nodes where they are.
+std::vector<std::uint32_t> impose_pore_pressures(ParticleSet& particles,
+                                                 std::span<const BoundaryNode> nodes,
+                                                 std::span<const BoundaryCondition> conditions,
+                                                 double time);
+
+/// impose_tractions() where stresses have relaxed at a fixed strain: the soil stretches across the faces until the
+/// tractions hold there, which changes the other normal stresses too.
+void yield_to_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                        std::span<const BoundaryCondition> conditions, double time,
+                        std::span<const Material> materials);
+
+/// Tributary area of a node on one face of it, from its mass [m^(D-1)].
+inline double face_area(double mass, double density, double spacing) {
+    return 2 * mass / (density * spacing);
+}
+
+}  // namespace talus::soil

@@ -1,0 +1,180 @@
+#include "physics/soil/constitutive.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus::soil {
+
+double trace(const Tensor& t) { return t[0] + t[1] + t[2]; }
+
+Tensor deviator(const Tensor& t) {
+    const double mean = trace(t) / 3;
+    return {t[0] - mean, t[1] - mean, t[2] - mean, t[3], t[4], t[5]};
+}
+
+double contraction(const Tensor& a, const Tensor& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+}
+
+double mises_stress(const Tensor& stress) {
+    const Tensor s = deviator(stress);
+    return std::sqrt(1.5 * contraction(s, s));
+}
+
+Tensor Elasticity::stress_of(const Tensor& strain) const {
+    if (uniaxial_stress) return {youngs_modulus * strain[0], 0, 0, 0, 0, 0};
+    const double shear = shear_modulus(), spherical = (bulk_modulus() - 2.0 / 3 * shear) * trace(strain);
+    Tensor stress;
+    for (std::size_t k = 0; k < 6; ++k) stress[k] = 2 * shear * strain[k] + (k < 3 ? spherical : 0);
+    return stress;
+}
+
+double Elasticity::energy(const Tensor& stress) const {
+    if (uniaxial_stress) return stress[0] * stress[0] / (2 * youngs_modulus);
+    const Tensor s = deviator(stress);
+    const double mean = trace(stress) / 3;
+    return contraction(s, s) / (4 * shear_modulus()) + mean * mean / (2 * bulk_modulus());
+}
+
+Yielding VonMises::at(const Tensor& stress, const History& history, double strength_factor) const {
+    const double q = mises_stress(stress);
+    const double limit = strength_factor * std::max(residual, yield_stress + hardening * history.strain);
+    Yielding found{q - limit, {}};
+    if (found.excess <= 0) return found;
+    found.flow = deviator(stress);
+    for (double& component : found.flow) component *= 1.5 / q;
+    return found;
+}
+
+double VonMises::fastest_rate(const Elasticity& elasticity) const {
+    return 3 * elasticity.shear_modulus() + std::max(hardening, 0.0);
+}
+
+DruckerPrager::Cone DruckerPrager::cone(double tangent, Fit fit) {
+    if (fit == Fit::plane_strain) {
+        const double root = std::sqrt(9 + 12 * tangent * tangent);
+        return {tangent / root, 3 / root};
+    }
+    const double sine = tangent / std::sqrt(1 + tangent * tangent), cosine = std::sqrt(1 - sine * sine);
+    const double below = std::sqrt(3.0) * (3 + (fit == Fit::outer ? -sine : sine));
+    return {2 * sine / below, 6 * cosine / below};
+}
+
+Yielding DruckerPrager::at(const Tensor& stress, const History& history, double strength_factor) const {
+    const Cone surface = cone(strength_factor * friction, fit);
+    const double now = strength_factor * std::max(residual, cohesion + hardening * history.strain);
+    const Tensor s = deviator(stress);
+    const double root = std::sqrt(0.5 * contraction(s, s));
+    Yielding found{root + surface.alpha * trace(stress) - surface.k_over_cohesion * now, {}};
+    if (found.excess <= 0) return found;
+    const double along = cone(dilation, fit).alpha;
+    // Where no shear is left, beyond the apex, only a change of volume leads back.
+    const bool at_apex = !(root > 1e-9 * found.excess);
+    for (std::size_t k = 0; k < 6; ++k)
+        found.flow[k] = (at_apex ? 0 : s[k] / (2 * root)) + (k < 3 ? (at_apex ? surface.alpha : along) : 0);
+    return found;
+}
+
+double DruckerPrager::fastest_rate(const Elasticity& elasticity) const {
+    const double alpha = cone(friction, fit).alpha;
+    return elasticity.shear_modulus() + 9 * elasticity.bulk_modulus() * alpha * alpha +
+           std::max(hardening, 0.0);
+}
+
+Yielding CamClay::at(const Tensor& stress, const History& history, double) const {
+    const double size = history.preconsolidation, p = -trace(stress) / 3, q = mises_stress(stress);
+    Yielding found{(q * q / (slope * slope) + p * (p - size)) / size, {}};
+    if (found.excess <= 0) return found;
+    const Tensor s = deviator(stress);
+    for (std::size_t k = 0; k < 6; ++k)
+        found.flow[k] = (3 * s[k] / (slope * slope) - (k < 3 ? (2 * p - size) / 3 : 0)) / size;
+    return found;
+}
+
+double CamClay::fastest_rate(const Elasticity& elasticity) const {
+    return elasticity.bulk_modulus() + 12 * elasticity.shear_modulus() / (slope * slope) +
+           hardening_rate() * preconsolidation;
+}
+
+double Material::wave_speed() const { return std::sqrt(elasticity.wave_modulus() / density); }
+
+namespace {
+
+/// Stress and history, as one vector for the Runge-Kutta steps.
+struct Point {
+    Tensor stress;
+    History history;
+
+    Point plus(double factor, const Point& rate) const {
+        Point sum = *this;
+        for (std::size_t k = 0; k < 6; ++k) sum.stress[k] += factor * rate.stress[k];
+        sum.history.strain += factor * rate.history.strain;
+        sum.history.work += factor * rate.history.work;
+        sum.history.preconsolidation += factor * rate.history.preconsolidation;
+        return sum;
+    }
+};
+
+template <class Surface>
+Point rate_of(const Surface& surface, const Material& material, double strength_factor, const Point& at) {
+    Point rate{};
+    const Yielding yielding = surface.at(at.stress, at.history, strength_factor);
+    if (yielding.excess <= 0) return rate;
+    const Overstress& law = material.overstress;
+    const double over = yielding.excess / law.reference;
+    const double speed = law.fluidity * (law.exponent == 1 ? over : std::pow(over, law.exponent));
+    Tensor strain;
+    for (std::size_t k = 0; k < 6; ++k) strain[k] = speed * yielding.flow[k];
+    rate.stress = material.elasticity.stress_of(strain);
+    for (double& component : rate.stress) component = -component;
+    const Tensor shear = deviator(strain);
+    rate.history.strain = std::sqrt(2.0 / 3 * contraction(shear, shear));
+    rate.history.work = contraction(at.stress, strain);
+    if constexpr (requires { surface.hardening_rate(); })
+        rate.history.preconsolidation =
+            -trace(strain) * surface.hardening_rate() * at.history.preconsolidation;
+    return rate;
+}
+
+template <class Surface>
+void relax_on(const Surface& surface, const Material& material, double strength_factor, double time_step,
+              int substeps, Tensor& stress, History& history) {
+    if (surface.at(stress, history, strength_factor).excess <= 0) return;
+    const auto rate = [&](const Point& at) { return rate_of(surface, material, strength_factor, at); };
+    Point now{stress, history};
+    const double dt = time_step / substeps;
+    for (int k = 0; k < substeps; ++k) {
+        const Point k1 = rate(now), k2 = rate(now.plus(dt / 2, k1)), k3 = rate(now.plus(dt / 2, k2)),
+                    k4 = rate(now.plus(dt, k3));
+        now = now.plus(dt / 6, k1.plus(2, k2).plus(2, k3).plus(1, k4));
+    }
+    stress = now.stress;
+    history = now.history;
+}
+
+}  // namespace
+
+void relax(const Material& material, double strength_factor, double time_step, int substeps, Tensor& stress,
+           History& history) {
+    std::visit(
+        [&]<class Surface>(const Surface& surface) {
+            if constexpr (!std::is_same_v<Surface, Elastic>)
+                relax_on(surface, material, strength_factor, time_step, substeps, stress, history);
+        },
+        material.surface);
+}
+
+double relaxation_rate(const Material& material) {
+    const Overstress& law = material.overstress;
+    return std::visit(
+        [&]<class Surface>(const Surface& surface) {
+            if constexpr (std::is_same_v<Surface, Elastic>)
+                return 0.0;
+            else
+                return law.fluidity * law.exponent * surface.fastest_rate(material.elasticity) /
+                       law.reference;
+        },
+        material.surface);
+}
+
+}  // namespace talus::soil

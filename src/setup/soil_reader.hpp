@@ -1,0 +1,21 @@
+#pragma once
+#include <vector>
+
+#include "io/scene.hpp"
+#include "src/setup/soil_scene.hpp"
+
+namespace talus {
+
+// Parts of a scene of soil. Faults are recorded in the scene.
+
+/// `saturated`: with what water in its pores needs.
+/// The material that a body's key `material` names, from the scene's table [materials.NAME].
+soil::Material read_soil_material(const Section& root, const Section& body, bool saturated);
+
+/// A table with times and values, or a frequency, under `key`; absent: 1 for ever.
+soil::TimeFactor read_time_factor(const Section& table, std::string_view key);
+
+/// The tables [[boundary]]: conditions and where they hold.
+void read_soil_boundaries(const Section& root, SoilScene& scene);
+
+}  // namespace talus

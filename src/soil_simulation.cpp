@@ -1,0 +1,257 @@
+#include "src/soil_simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "comm/exact_sum.hpp"
+#include "domain/box.hpp"
+#include "domain/soil_fields.hpp"
+
+namespace talus {
+
+namespace {
+
+bool any_flows(const SoilSetup& setup) {
+    return std::any_of(setup.materials.begin(), setup.materials.end(),
+                       [](const soil::Material& material) { return material.flows(); });
+}
+bool any_cam_clay(const SoilSetup& setup) {
+    return std::any_of(setup.materials.begin(), setup.materials.end(), [](const soil::Material& material) {
+        return std::holds_alternative<soil::CamClay>(material.surface);
+    });
+}
+
+/// Steps of the relaxation in a time step: each a fraction of the fastest rate's time.
+int substeps_of(const soil::Material& material, double time_step) {
+    constexpr double most = 1.0;  // Runge-Kutta of fourth order is stable up to 2.78
+    return std::max(1, static_cast<int>(std::ceil(time_step * soil::relaxation_rate(material) / most)));
+}
+
+}  // namespace
+
+void add_fields(ParticleSet& particles, const SoilSetup& setup) {
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &soil_field::grid, &soil_field::velocity, &soil_field::stress, &soil_field::displacement,
+             &soil_field::faces, &soil_field::conditions, &field::mass, &field::body,
+             &field::smoothing_length})
+        particles.add(*info);
+    if (setup.dimension < 3) particles.add(soil_field::lateral_stress);
+    if (any_flows(setup)) {
+        particles.add(soil_field::viscoplastic_strain);
+        particles.add(soil_field::viscoplastic_work);
+    }
+    if (setup.saturated) soil::add_pore_fields(particles);
+    if (any_cam_clay(setup)) particles.add(soil_field::preconsolidation);
+}
+
+SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, ParticleSet particles)
+    : comm_(comm),
+      setup_(std::move(setup)),
+      particles_(std::move(particles)),
+      decomposition_(comm, setup_.partition) {
+    flows_ = any_flows(setup_);
+    double fastest = 0;
+    for (const soil::Material& material : setup_.materials)
+        fastest = std::max(fastest, material.wave_speed());
+    time_step_ = setup_.courant * setup_.spacing / fastest;
+    for (const soil::Material& material : setup_.materials)
+        substeps_.push_back(substeps_of(material, time_step_));
+    double radius = 0;
+    for (const double h : std::as_const(particles_).own(field::smoothing_length))
+        radius = std::max(radius, soil::search_range * h);
+    Box box;
+    box.dimension = setup_.dimension;
+    grid_ = std::make_unique<CellGrid>(box, comm_.all_max(radius), 1);
+    if (setup_.saturated) pore_pressure_.emplace(comm_, decomposition_.halo());
+    decomposition_.expect(particles_);
+    decomposition_.divide(particles_, *grid_);
+}
+
+void SoilSimulation::arrange() {
+    phases_.enter(Phase::decompose);
+    decomposition_.arrange(particles_, *grid_);
+    decomposition_.halo().begin(
+        particles_, {&field::position, &field::smoothing_length, &soil_field::grid, &field::body});
+    decomposition_.halo().finish();
+    soil::build_stencils(particles_, decomposition_.table(),
+                         smooths() || setup_.pressure_smoothing > 0, stencils_);
+    boundary_nodes_ = soil::list_boundary_nodes(particles_, stencils_, setup_.conditions, setup_.spacing);
+    std::string message;
+    if (stencils_.poor > 0)
+        message = fmt::format(
+            "step {}, time {} s: particle {} and {} more of this rank have too few neighbours of the other "
+            "grid for a gradient; a body is thinner than two spacings there",
+            step_, time_, stencils_.first_poor, stencils_.poor - 1);
+    comm_.all_agree(1, message);
+    phases_.stop();
+}
+
+void SoilSimulation::start() {
+    arrange();
+    if (setup_.saturated)
+        soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_);
+    soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
+    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
+}
+
+void SoilSimulation::resume(double time, std::uint64_t step) {
+    time_ = time;
+    step_ = step;
+    arrange();
+}
+
+template <class Pass>
+void SoilSimulation::overlapped(std::initializer_list<const FieldInfo*> fields, Phase phase, Pass&& pass) {
+    Halo& halo = decomposition_.halo();
+    phases_.enter(Phase::halo);
+    halo.begin(particles_, fields);
+    phases_.enter(phase);
+    pass(Cells::interior);
+    phases_.enter(Phase::halo);
+    halo.finish();
+    phases_.enter(phase);
+    pass(Cells::boundary);
+}
+
+void SoilSimulation::step() {
+    soil::StepSettings settings{.time_step = time_step_,
+                                .strength_factor = setup_.strength_factor(time_),
+                                .damping = setup_.damping,
+                                .hourglass = setup_.hourglass,
+                                .stress_smoothing = setup_.stress_smoothing,
+                                .materials = setup_.materials,
+                                .substeps = substeps_};
+    const double gravity = setup_.gravity_factor(time_ + 0.5 * time_step_);
+    for (std::size_t a = 0; a < 3; ++a) settings.body_force[a] = gravity * setup_.gravity[a];
+    phases_.enter(Phase::material);
+    soil::apply_sources(particles_, stencils_, settings);
+    if (flows_)
+        soil::yield_to_tractions(particles_, boundary_nodes_, setup_.conditions, time_, setup_.materials);
+    overlapped(
+        {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
+        [&](Cells which) { soil::advance_elements(particles_, stencils_.to_elements, which, settings); });
+    if (pore_pressure_) advance_pore_pressure();
+    phases_.enter(Phase::gradients);
+    soil::gather_face_gradients(particles_, stencils_.face_gradients, memory_);
+    if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
+    overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces,
+               [&](Cells which) { soil::advance_nodes(particles_, stencils_, which, settings, memory_); });
+    phases_.enter(Phase::motion);
+    ++step_;
+    time_ = static_cast<double>(step_) * time_step_;
+    soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
+    soil::advance_face_stress(particles_, stencils_, settings, memory_);
+    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
+    soil::displace(particles_, stencils_, time_step_);
+    pairs_ += stencils_.partner_count();
+    refuse_not_finite();
+    phases_.stop();
+}
+
+void SoilSimulation::advance_pore_pressure() {
+    phases_.enter(Phase::pressure);
+    const soil::PorePressure::Settings settings{.time_step = time_step_,
+                                                .spacing = setup_.spacing,
+                                                .stabilisation = setup_.pressure_smoothing,
+                                                .tolerance = setup_.pressure_tolerance,
+                                                .materials = setup_.materials};
+    const std::vector<std::uint32_t> imposed = soil::impose_pore_pressures(
+        particles_, boundary_nodes_, setup_.conditions, time_ + time_step_);
+    Halo& halo = decomposition_.halo();
+    halo.begin(particles_, {&soil_field::velocity});
+    halo.finish();
+    pore_pressure_->advance(particles_, stencils_, imposed, settings);
+    halo.begin(particles_, {&soil_field::pore_pressure});
+    halo.finish();
+    soil::PorePressure::correct_elements(particles_, stencils_.to_elements, settings);
+    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);  // now of this pressure
+}
+
+void SoilSimulation::refuse_not_finite() {
+    const NotFinite found = find_not_finite(particles_);
+    phases_.enter(Phase::wait);
+    const std::uint64_t first = comm_.all_min(found.field ? found.id : ~std::uint64_t{0});
+    if (first == ~std::uint64_t{0}) return;
+    std::string message;
+    if (found.field && found.id == first)
+        message = fmt::format("step {}, time {} s: {} of particle {} in set '{}' is not finite", step_, time_,
+                              found.field->name, found.id, particles_.name());
+    comm_.all_agree(1, message);
+}
+
+void SoilSimulation::add_force(const soil::BoundaryNode& node, std::span<ExactSum> sums) const {
+    const std::uint32_t i = node.index;
+    soil::Tensor stress = soil::stress_at(particles_, i);
+    if (setup_.saturated)
+        for (std::size_t a = 0; a < 3; ++a) stress[a] -= particles_.data(soil_field::pore_pressure)[i];
+    const double density = setup_.materials[particles_.data(field::body)[i]].density;
+    const double area = soil::face_area(particles_.data(field::mass)[i], density, setup_.spacing);
+    constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    for (std::size_t c = 0; c < setup_.conditions.size(); ++c) {
+        const soil::Face face = setup_.conditions[c].face;
+        if (face < 0 || !(node.conditions >> c & 1)) continue;
+        for (std::size_t b = 0; b < static_cast<std::size_t>(setup_.dimension); ++b)
+            sums[3 * c + b].add(soil::outward(face) * area *
+                                stress[static_cast<std::size_t>(place[soil::axis_of(face)][b])]);
+    }
+}
+
+SoilTotals SoilSimulation::totals() const {
+    enum Sum { mass, kinetic, elastic, plastic, px, py, pz, sum_count };
+    std::vector<ExactSum> sums(sum_count + 3 * setup_.conditions.size());
+    std::array<double, 5> extremes{};
+    extremes[3] = extremes[4] = -std::numeric_limits<double>::infinity();
+    const double* m = particles_.data(field::mass);
+    const std::uint8_t* body = particles_.data(field::body);
+    const double* water = setup_.saturated ? particles_.data(soil_field::pore_pressure) : nullptr;
+    const bool flows = particles_.has(soil_field::viscoplastic_strain);
+    stencils_.for_each_node([&](std::uint32_t i) {
+        double speed2 = 0, way2 = 0;
+        for (int a = 0; a < setup_.dimension; ++a) {
+            const double v = particles_.data(soil_field::velocity, a)[i];
+            const double u = particles_.data(soil_field::displacement, a)[i];
+            sums[static_cast<std::size_t>(px + a)].add(m[i] * v);
+            speed2 += v * v;
+            way2 += u * u;
+        }
+        const soil::Material& material = setup_.materials[body[i]];
+        const double volume = m[i] / material.density;
+        sums[mass].add(m[i]);
+        sums[kinetic].add(0.5 * m[i] * speed2);
+        sums[elastic].add(volume * material.elasticity.energy(soil::stress_at(particles_, i)));
+        extremes[0] = std::max(extremes[0], std::sqrt(speed2));
+        extremes[1] = std::max(extremes[1], std::sqrt(way2));
+        if (water) {
+            extremes[3] = std::max(extremes[3], -water[i]);
+            extremes[4] = std::max(extremes[4], water[i]);
+        }
+        if (!flows) return;
+        sums[plastic].add(volume * particles_.data(soil_field::viscoplastic_work)[i]);
+        extremes[2] = std::max(extremes[2], particles_.data(soil_field::viscoplastic_strain)[i]);
+    });
+    for (const soil::BoundaryNode& node : boundary_nodes_)
+        add_force(node, std::span<ExactSum>(sums).subspan(sum_count));
+    ExactSum::all_reduce(comm_, sums);
+    comm_.all_max(std::span<double>(extremes));
+    SoilTotals totals{.mass = sums[mass].value(),
+                      .kinetic_energy = sums[kinetic].value(),
+                      .elastic_energy = sums[elastic].value(),
+                      .viscoplastic_work = sums[plastic].value(),
+                      .momentum = {sums[px].value(), sums[py].value(), sums[pz].value()},
+                      .greatest_speed = extremes[0],
+                      .greatest_displacement = extremes[1],
+                      .greatest_viscoplastic_strain = extremes[2],
+                      .least_pore_pressure = water ? -extremes[3] : 0,
+                      .greatest_pore_pressure = water ? extremes[4] : 0,
+                      .forces = {}};
+    for (std::size_t c = 0; c < setup_.conditions.size(); ++c)
+        totals.forces.push_back({sums[sum_count + 3 * c].value(), sums[sum_count + 3 * c + 1].value(),
+                                 sums[sum_count + 3 * c + 2].value()});
+    return totals;
+}
+
+}  // namespace talus
