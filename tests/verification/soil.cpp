@@ -100,7 +100,8 @@ TEST(WallsOfParticles, HoldWaterAsWell) {
               "speed=30},least_pressure=0}"});
     EXPECT_LT(found.error, 0.02);
     EXPECT_NEAR(found.ratio, 1, 1e-12);
-    EXPECT_LT(found.drift, 0.02 * 0.05) << "of a spacing, nothing leaks";
+    // A lattice of water need not stay one, but none of it may get between particles of a wall.
+    EXPECT_LT(found.drift, 0.25 * 0.05) << "of a spacing";
 }
 
 TEST(WallsOfParticles, DoNotHoldBackWhatSlips) {
