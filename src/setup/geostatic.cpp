@@ -40,9 +40,10 @@ void put_geostatic(ParticleSet& particles, std::size_t i, const GeostaticStart& 
         height += start.up[static_cast<std::size_t>(a)] * particles.data(field::position, a)[i];
     const double vertical = start.weight * std::max(0.0, start.surface - height);
     const double lateral = start.lateral_ratio * vertical, pressure = (vertical + 2 * lateral) / 3;
+    const double compression = 1 + pressure / material.bulk_modulus;
+    particles.data(field::mass)[i] *= compression;
     if (particles.has(field::density))
-        particles.data(field::density)[i] =
-            material.reference_density * (1 + pressure / material.bulk_modulus);
+        particles.data(field::density)[i] = material.reference_density * compression;
     if (!particles.has(field::deviatoric_stress)) return;
     for (int c = 0; c < component_count(Shape::symmetric_tensor, dimension); ++c) {
         const auto [a, b] = symmetric_axes(c, dimension);

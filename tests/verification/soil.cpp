@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <mpi.h>
 
 #include <algorithm>
 #include <array>
@@ -45,7 +46,9 @@ struct Rest {
     double error = 0, ratio = 0, drift = 0;
 };
 
-Rest rest(const Communicator& comm, const std::vector<std::string>& overrides) {
+/// Small: every rank computes it for itself.
+Rest rest(const std::vector<std::string>& overrides) {
+    const Communicator comm(MPI_COMM_SELF);
     const SceneSetup scene = solid_scene(comm, "soil_at_rest", overrides);
     const auto run = started(comm, scene);
     const double weight = scene.bodies[0].density * gravity;
@@ -66,7 +69,7 @@ Rest rest(const Communicator& comm, const std::vector<std::string>& overrides) {
         found.error = std::max(found.error, std::sqrt(square / static_cast<double>(now.y.size())));
         found.ratio = lateral / vertical;
     }
-    if (comm.is_root())
+    if (world().is_root())
         fmt::print("vertical stress to {:.4f} of rho g H, K0 = {:.4f}, moved {:.1e} m\n", found.error,
                    found.ratio, found.drift);
     return found;
@@ -78,7 +81,7 @@ TEST(SoilAtRest, KeepsTheStressOfItsWeight) {
     // sigma/3), elasticity wants less.
     const double f = 0.5, least = (std::sqrt(3.0) - f) / (std::sqrt(3.0) + 2 * f);
     for (const char* formulation : {"godunov", "standard"}) {
-        const Rest found = rest(world(), {fmt::format("sph.formulation={}", formulation)});
+        const Rest found = rest({fmt::format("sph.formulation={}", formulation)});
         EXPECT_LT(found.error, 0.02) << "20 rows of particles";
         EXPECT_NEAR(found.ratio, least, 0.01);
         EXPECT_LT(found.drift, 0.02 * 0.05) << "of a spacing";
@@ -86,26 +89,29 @@ TEST(SoilAtRest, KeepsTheStressOfItsWeight) {
 }
 
 TEST(SoilAtRest, ElasticSoilHasTheRatioOfHooke) {
-    const Rest found = rest(world(), {"sph.formulation=standard", "materials.sand.poisson_ratio=0.4"});
+    const Rest found = rest({"sph.formulation=standard", "materials.sand.poisson_ratio=0.4"});
     EXPECT_LT(found.error, 0.02);
     EXPECT_NEAR(found.ratio, 0.4 / 0.6, 0.01);
 }
 
 TEST(WallsOfParticles, HoldWaterAsWell) {
-    const Rest found = rest(world(), {"materials.sand={density=1000,equation_of_state={kind=\"linear\",sound_"
-                                      "speed=30},least_pressure=0}"});
+    const Rest found =
+        rest({"materials.sand={density=1000,equation_of_state={kind=\"linear\",sound_"
+              "speed=30},least_pressure=0}"});
     EXPECT_LT(found.error, 0.02);
     EXPECT_NEAR(found.ratio, 1, 1e-12);
-    EXPECT_LT(found.drift, 0.05) << "of a spacing, nothing leaks";
+    // A lattice of water need not stay one, but none of it may get between particles of a wall.
+    EXPECT_LT(found.drift, 0.25 * 0.05) << "of a spacing";
 }
 
 TEST(WallsOfParticles, DoNotHoldBackWhatSlips) {
     // An elastic block on a slope without friction: u = g_x t.
+    const Communicator alone(MPI_COMM_SELF);
     const SceneSetup scene = solid_scene(
-        world(), "column_collapse",
+        alone, "column_collapse",
         {"sph.gravity=[2.5,-9.5]", "body[1].wall=free_slip", "body[1].normal=[0,1]",
          "body[0].geostatic.surface=-1", "body[0].lower=[0.05,0]", "materials.bars.strength.cohesion=1e6"});
-    const auto run = started(world(), scene);
+    const auto run = started(alone, scene);
     while (run->time() < 0.1) run->step();
     const Matter block(*run);
     double mean = 0, lowest = 1;
@@ -141,7 +147,7 @@ TEST(ColumnCollapse, RunsOutAsColumnsOfSandDo) {
     double speed2 = 0;
     for (std::size_t i = 0; i < end.u.size(); ++i) speed2 += end.u[i] * end.u[i] + end.v[i] * end.v[i];
     const double speed = std::sqrt(speed2 / static_cast<double>(end.u.size()));
-    if (comm.is_root())
+    if (world().is_root())
         fmt::print("run-out {:.2f}, height {:.2f}, rms speed {:.4f} m/s, density {:.0f} to {:.0f}\n", run_out,
                    height, speed, *least, *greatest);
     EXPECT_GT(run_out, 2.4);
