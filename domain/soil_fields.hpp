@@ -40,8 +40,8 @@ inline constexpr std::uint8_t turns_inwards = 64;
 inline constexpr Field<std::uint32_t> conditions{
     "conditions", "1",   scalar,
     state,        owner, "boundary conditions of the scene that hold at the node, a bit each"};
-inline constexpr Field<double> pore_pressure{
-    "pore_pressure", "Pa", scalar, state, halo, "pressure of the pore water, of nodes"};
+inline constexpr Field<double> pore_pressure{"pore_pressure", "Pa", scalar,
+                                             state,           halo, "pressure of the pore water, of nodes"};
 inline constexpr Field<double> volume{"volume", "m3",  scalar,
                                       state,    owner, "of nodes: share of the body's volume"};
 inline constexpr Field<double> pressure_guess{

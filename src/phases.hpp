@@ -23,8 +23,8 @@ enum class Phase : unsigned char {
 };
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Phase::count)> phase_names = {
-    "decompose", "halo",     "density", "gradients",       "forces",
-    "gravity",   "pressure", "material", "motion",  "wait for others", "output"};
+    "decompose", "halo",     "density", "gradients",       "forces", "gravity",
+    "pressure",  "material", "motion",  "wait for others", "output"};
 
 /// Wall time spent in each phase on this rank.
 class Phases {

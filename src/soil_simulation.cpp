@@ -53,7 +53,6 @@ SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, Partic
       setup_(std::move(setup)),
       particles_(std::move(particles)),
       decomposition_(comm, setup_.partition) {
-    flows_ = any_flows(setup_);
     double fastest = 0;
     for (const soil::Material& material : setup_.materials)
         fastest = std::max(fastest, material.wave_speed());
@@ -77,8 +76,8 @@ void SoilSimulation::arrange() {
     decomposition_.halo().begin(
         particles_, {&field::position, &field::smoothing_length, &soil_field::grid, &field::body});
     decomposition_.halo().finish();
-    soil::build_stencils(particles_, decomposition_.table(),
-                         smooths() || setup_.pressure_smoothing > 0, stencils_);
+    soil::build_stencils(particles_, decomposition_.table(), smooths() || setup_.pressure_smoothing > 0,
+                         stencils_);
     boundary_nodes_ = soil::list_boundary_nodes(particles_, stencils_, setup_.conditions, setup_.spacing);
     std::string message;
     if (stencils_.poor > 0)
@@ -92,10 +91,9 @@ void SoilSimulation::arrange() {
 
 void SoilSimulation::start() {
     arrange();
-    if (setup_.saturated)
-        soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_);
+    if (setup_.saturated) soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
-    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
+    if (setup_.dimension == 1) soil::impose_end_stress(particles_, boundary_nodes_, setup_.conditions, time_);
 }
 
 void SoilSimulation::resume(double time, std::uint64_t step) {
@@ -129,13 +127,13 @@ void SoilSimulation::step() {
     for (std::size_t a = 0; a < 3; ++a) settings.body_force[a] = gravity * setup_.gravity[a];
     phases_.enter(Phase::material);
     soil::apply_sources(particles_, stencils_, settings);
-    if (flows_)
-        soil::yield_to_tractions(particles_, boundary_nodes_, setup_.conditions, time_, setup_.materials);
     overlapped(
         {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
         [&](Cells which) { soil::advance_elements(particles_, stencils_.to_elements, which, settings); });
     if (pore_pressure_) advance_pore_pressure();
     phases_.enter(Phase::gradients);
+    soil::gather_tractions(boundary_nodes_, setup_.conditions, time_ + 0.5 * time_step_, stencils_,
+                           setup_.dimension, memory_.tractions);
     soil::gather_face_gradients(particles_, stencils_.face_gradients, memory_);
     if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
     overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces,
@@ -145,7 +143,7 @@ void SoilSimulation::step() {
     time_ = static_cast<double>(step_) * time_step_;
     soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::advance_face_stress(particles_, stencils_, settings, memory_);
-    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);
+    if (setup_.dimension == 1) soil::impose_end_stress(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::displace(particles_, stencils_, time_step_);
     pairs_ += stencils_.partner_count();
     refuse_not_finite();
@@ -159,8 +157,8 @@ void SoilSimulation::advance_pore_pressure() {
                                                 .stabilisation = setup_.pressure_smoothing,
                                                 .tolerance = setup_.pressure_tolerance,
                                                 .materials = setup_.materials};
-    const std::vector<std::uint32_t> imposed = soil::impose_pore_pressures(
-        particles_, boundary_nodes_, setup_.conditions, time_ + time_step_);
+    const std::vector<std::uint32_t> imposed =
+        soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_ + time_step_);
     Halo& halo = decomposition_.halo();
     halo.begin(particles_, {&soil_field::velocity});
     halo.finish();
@@ -168,7 +166,6 @@ void SoilSimulation::advance_pore_pressure() {
     halo.begin(particles_, {&soil_field::pore_pressure});
     halo.finish();
     soil::PorePressure::correct_elements(particles_, stencils_.to_elements, settings);
-    soil::impose_tractions(particles_, boundary_nodes_, setup_.conditions, time_);  // now of this pressure
 }
 
 void SoilSimulation::refuse_not_finite() {

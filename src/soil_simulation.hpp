@@ -30,9 +30,9 @@ struct SoilSetup {
     double damping = 0;                          ///< [1/s]
     double hourglass = 0, stress_smoothing = 0;  ///< as soil::StepSettings
     std::vector<soil::BoundaryCondition> conditions;
-    bool saturated = false;          ///< pores hold water under pressure: the v-p_w model
-    double pressure_smoothing = 0;   ///< soil::PorePressure::Settings::stabilisation
-    double pressure_tolerance = 0;   ///< soil::PorePressure::Settings::tolerance
+    bool saturated = false;         ///< pores hold water under pressure: the v-p_w model
+    double pressure_smoothing = 0;  ///< soil::PorePressure::Settings::stabilisation
+    double pressure_tolerance = 0;  ///< soil::PorePressure::Settings::tolerance
     PartitionMethod partition = PartitionMethod::cheapest;
 };
 
@@ -103,7 +103,6 @@ class SoilSimulation {
     soil::StepMemory memory_;
     std::optional<soil::PorePressure> pore_pressure_;
     std::vector<int> substeps_;  ///< one a material
-    bool flows_ = false;
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     Phases phases_;

@@ -1,9 +1,9 @@
 #include "physics/soil/boundary_conditions.hpp"
 
-#include "domain/soil_fields.hpp"
 #include <cmath>
 #include <utility>
 
+#include "domain/soil_fields.hpp"
 #include "physics/soil/state_columns.hpp"
 
 namespace talus::soil {
@@ -35,20 +35,20 @@ double share_of_face(const BoundaryCondition& condition, const std::array<double
 }  // namespace
 
 std::vector<BoundaryNode> list_boundary_nodes(const ParticleSet& particles, const Stencils& stencils,
-                                              std::span<const BoundaryCondition> conditions,
-                                              double spacing) {
+                                              std::span<const BoundaryCondition> conditions, double spacing) {
     const std::uint8_t* faces = particles.data(soil_field::faces);
     const std::uint32_t* held = particles.data(soil_field::conditions);
     std::vector<BoundaryNode> listed;
+    std::uint32_t face_row = 0;
     stencils.for_each_node([&](std::uint32_t i) {
         if (faces[i] == 0 && held[i] == 0) return;
         std::array<double, 3> at{};
         for (int a = 0; a < particles.dimension(); ++a)
             at[static_cast<std::size_t>(a)] = particles.data(field::position, a)[i];
-        BoundaryNode node{i, faces[i], held[i], {}};
+        BoundaryNode node{i, face_row, faces[i], held[i], {}};
+        face_row += faces[i] != 0;
         for (const BoundaryCondition& condition : conditions)
-            node.shares.push_back(
-                share_of_face(condition, at, particles.dimension(), faces[i], spacing));
+            node.shares.push_back(share_of_face(condition, at, particles.dimension(), faces[i], spacing));
         listed.push_back(std::move(node));
     });
     return listed;
@@ -82,80 +82,16 @@ struct OnFace {
 OnFace on_face(const BoundaryNode& node, Face face, std::span<const BoundaryCondition> conditions,
                std::span<const double> factors) {
     OnFace found;
-    for_each_condition(node, conditions, factors, [&](const BoundaryCondition& condition, double factor,
-                                                      double share) {
-        if (condition.face >= 0 && condition.face != face) return;
-        for (std::size_t a = 0; a < 3 && condition.kind != Kind::pore_pressure; ++a)
-            if (condition.kind == Kind::traction)
-                found.traction[a] += share * (condition.value[a] * factor - found.traction[a]);
-            else
-                found.held[a] = found.held[a] || condition.held[a];
-    });
+    for_each_condition(
+        node, conditions, factors, [&](const BoundaryCondition& condition, double factor, double share) {
+            if (condition.face >= 0 && condition.face != face) return;
+            for (std::size_t a = 0; a < 3 && condition.kind != Kind::pore_pressure; ++a)
+                if (condition.kind == Kind::traction)
+                    found.traction[a] += share * (condition.value[a] * factor - found.traction[a]);
+                else
+                    found.held[a] = found.held[a] || condition.held[a];
+        });
     return found;
-}
-
-template <int D>
-void impose_tractions_in(ParticleSet& particles, std::span<const BoundaryNode> nodes,
-                         std::span<const BoundaryCondition> conditions, std::span<const double> factors) {
-    const auto stress = sph::components_to_write<sph::symmetric_count<D>>(particles, soil_field::stress);
-    const double* water =
-        particles.has(soil_field::pore_pressure) ? particles.data(soil_field::pore_pressure) : nullptr;
-    for (const BoundaryNode& node : nodes)
-        for (Face face = 0; face < 2 * D; ++face) {
-            if (!(node.faces >> face & 1)) continue;
-            const OnFace imposed = on_face(node, face, conditions, factors);
-            for (int b = 0; b < D; ++b)
-                if (!imposed.held[static_cast<std::size_t>(b)])
-                    stress[static_cast<std::size_t>(sph::symmetric_index<D>(axis_of(face), b))]
-                          [node.index] =
-                              outward(face) * imposed.traction[static_cast<std::size_t>(b)] +
-                              (water && b == axis_of(face) ? water[node.index] : 0);
-        }
-}
-
-/// Changes of normal stresses that were imposed change the others as the strain along these stays the same.
-template <int D>
-class NormalStresses {
-  public:
-    explicit NormalStresses(ParticleSet& particles) : columns_(particles) {}
-
-    void remember(std::size_t i) {
-        for (std::size_t a = 0; a < D; ++a) before_[a] = columns_.stress[a][i];
-    }
-    void follow(std::size_t i, double poisson_ratio) const {
-        double sum = 0;
-        int changed = 0;
-        std::array<bool, 3> imposed{};
-        for (std::size_t a = 0; a < D; ++a) {
-            const double change = columns_.stress[a][i] - before_[a];
-            imposed[a] = change != 0;
-            changed += imposed[a];
-            sum += change;
-        }
-        if (changed == 0 || changed == 3) return;
-        const double follows = (changed == 1 ? poisson_ratio / (1 - poisson_ratio) : poisson_ratio) * sum;
-        for (std::size_t a = 0; a < D; ++a)
-            if (!imposed[a]) columns_.stress[a][i] += follows;
-        if (D < 3) columns_.lateral[i] += follows;
-    }
-
-  private:
-    StateColumns<D> columns_;
-    std::array<double, D> before_{};
-};
-
-template <int D>
-void yield_to_tractions_in(ParticleSet& particles, std::span<const BoundaryNode> nodes,
-                           std::span<const BoundaryCondition> conditions, std::span<const double> factors,
-                           std::span<const Material> materials) {
-    NormalStresses<D> normal(particles);
-    const std::uint8_t* body = particles.data(field::body);
-    for (const BoundaryNode& node : nodes) {
-        const Elasticity& elasticity = materials[body[node.index]].elasticity;
-        normal.remember(node.index);
-        impose_tractions_in<D>(particles, std::span(&node, 1), conditions, factors);
-        if (!elasticity.uniaxial_stress) normal.follow(node.index, elasticity.poisson_ratio);
-    }
 }
 
 }  // namespace
@@ -174,36 +110,50 @@ void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nod
     }
 }
 
-std::vector<std::uint32_t> impose_pore_pressures(ParticleSet& particles,
-                                                 std::span<const BoundaryNode> nodes,
-                                                 std::span<const BoundaryCondition> conditions,
-                                                 double time) {
+std::vector<std::uint32_t> impose_pore_pressures(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                                                 std::span<const BoundaryCondition> conditions, double time) {
     const std::vector<double> factors = factors_at(conditions, time);
     std::vector<std::uint32_t> imposed;
     for (const BoundaryNode& node : nodes)
-        for_each_condition(node, conditions, factors, [&](const BoundaryCondition& condition, double factor, double) {
-            if (condition.kind != Kind::pore_pressure) return;
-            particles.data(soil_field::pore_pressure)[node.index] = condition.value[0] * factor;
-            if (imposed.empty() || imposed.back() != node.index) imposed.push_back(node.index);
-        });
+        for_each_condition(
+            node, conditions, factors, [&](const BoundaryCondition& condition, double factor, double) {
+                if (condition.kind != Kind::pore_pressure) return;
+                particles.data(soil_field::pore_pressure)[node.index] = condition.value[0] * factor;
+                if (imposed.empty() || imposed.back() != node.index) imposed.push_back(node.index);
+            });
     return imposed;
 }
 
-void impose_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
-                      std::span<const BoundaryCondition> conditions, double time) {
+void impose_end_stress(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                       std::span<const BoundaryCondition> conditions, double time) {
     const std::vector<double> factors = factors_at(conditions, time);
-    sph::with_dimension(particles, [&](auto dimension) {
-        impose_tractions_in<dimension()>(particles, nodes, conditions, factors);
-    });
+    double* stress = particles.data(soil_field::stress);
+    const double* water =
+        particles.has(soil_field::pore_pressure) ? particles.data(soil_field::pore_pressure) : nullptr;
+    for (const BoundaryNode& node : nodes)
+        for (Face face = 0; face < 2; ++face) {
+            if (!(node.faces >> face & 1)) continue;
+            const OnFace imposed = on_face(node, face, conditions, factors);
+            if (!imposed.held[0])
+                stress[node.index] = outward(face) * imposed.traction[0] + (water ? water[node.index] : 0);
+        }
 }
 
-void yield_to_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
-                        std::span<const BoundaryCondition> conditions, double time,
-                        std::span<const Material> materials) {
+void gather_tractions(std::span<const BoundaryNode> nodes, std::span<const BoundaryCondition> conditions,
+                      double time, const Stencils& stencils, int dimension, std::vector<double>& divergence) {
     const std::vector<double> factors = factors_at(conditions, time);
-    sph::with_dimension(particles, [&](auto dimension) {
-        yield_to_tractions_in<dimension()>(particles, nodes, conditions, factors, materials);
-    });
+    const auto axes = static_cast<std::size_t>(dimension);
+    divergence.assign(stencils.to_faces.targets.size() * axes, 0);
+    for (const BoundaryNode& node : nodes)
+        for (Face face = 0; face < 2 * dimension; ++face) {
+            if (!(node.faces >> face & 1)) continue;
+            const OnFace imposed = on_face(node, face, conditions, factors);
+            const std::size_t row = node.face_row * axes;
+            const double weight =
+                outward(face) * stencils.own_weights[row + static_cast<std::size_t>(axis_of(face))];
+            for (std::size_t b = 0; b < axes; ++b)
+                if (!imposed.held[b]) divergence[row + b] += weight * imposed.traction[b];
+        }
 }
 
 }  // namespace talus::soil

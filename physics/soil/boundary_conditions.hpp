@@ -37,38 +37,35 @@ constexpr double reach_beyond(BoundaryCondition::Kind kind) {
 /// A node on a face or with conditions.
 struct BoundaryNode {
     std::uint32_t index;
+    std::uint32_t face_row;    ///< of Stencils::to_faces, if `faces` is not 0
     std::uint8_t faces;        ///< as soil_field::faces
     std::uint32_t conditions;  ///< as soil_field::conditions
-    /// Of the load of each condition: it is spread over a spacing to both sides of its edges, for no stress of
-    /// elements can balance what changes from node to node.
+    /// Of the load of each condition: it is spread over a spacing to both sides of its edges, for no stress
+    /// of elements can balance what changes from node to node.
     std::vector<double> shares;
 };
 
 /// Of a rank's own nodes.
 std::vector<BoundaryNode> list_boundary_nodes(const ParticleSet& particles, const Stencils& stencils,
-                                              std::span<const BoundaryCondition> conditions,
-                                              double spacing);
+                                              std::span<const BoundaryCondition> conditions, double spacing);
 
 /// Imposes velocities at `time` on nodes.
 void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nodes,
                        std::span<const BoundaryCondition> conditions, double time);
 
-/// Imposes tractions of soil and water together at `time` on the faces that nodes lie on, 0 where nothing else is said. Of the velocity
-/// and the traction along one axis only one can be imposed on a face: the velocity goes first.
-void impose_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
-                      std::span<const BoundaryCondition> conditions, double time);
+/// What tractions of soil and water together at `time`, 0 where nothing else is said, add to the divergence
+/// of the stress at nodes on faces: D values for each row of Stencils::to_faces. Of the velocity and the
+/// traction along one axis only one can be imposed on a face: the velocity goes first.
+void gather_tractions(std::span<const BoundaryNode> nodes, std::span<const BoundaryCondition> conditions,
+                      double time, const Stencils& stencils, int dimension, std::vector<double>& divergence);
+
+/// In 1D: makes the stress at loaded ends at `time` that of the load, less that of the water.
+void impose_end_stress(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                       std::span<const BoundaryCondition> conditions, double time);
 
 /// Imposes pore pressures at `time`; returns the nodes where they are.
-std::vector<std::uint32_t> impose_pore_pressures(ParticleSet& particles,
-                                                 std::span<const BoundaryNode> nodes,
-                                                 std::span<const BoundaryCondition> conditions,
-                                                 double time);
-
-/// impose_tractions() where stresses have relaxed at a fixed strain: the soil stretches across the faces until the
-/// tractions hold there, which changes the other normal stresses too.
-void yield_to_tractions(ParticleSet& particles, std::span<const BoundaryNode> nodes,
-                        std::span<const BoundaryCondition> conditions, double time,
-                        std::span<const Material> materials);
+std::vector<std::uint32_t> impose_pore_pressures(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                                                 std::span<const BoundaryCondition> conditions, double time);
 
 /// Tributary area of a node on one face of it, from its mass [m^(D-1)].
 inline double face_area(double mass, double density, double spacing) {

@@ -51,9 +51,9 @@ void for_each_divergence(const StencilRows& rows, const std::array<const double*
 }  // namespace
 
 void add_pore_fields(ParticleSet& particles) {
-    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-             &soil_field::pore_pressure, &soil_field::volume, &soil_field::pressure_guess,
-             &soil_field::pressure_flux})
+    for (const FieldInfo* info :
+         std::initializer_list<const FieldInfo*>{&soil_field::pore_pressure, &soil_field::volume,
+                                                 &soil_field::pressure_guess, &soil_field::pressure_flux})
         particles.add(*info);
 }
 
@@ -110,22 +110,23 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
         const double element_volume = std::pow(settings.spacing, D);
         const auto velocity = sph::components<D>(particles, soil_field::velocity);
         for (const StencilRows* rows : {&stencils.to_nodes, &stencils.to_faces})
-            for_each_divergence<D>(*rows, velocity, [&](std::uint32_t row, std::uint32_t i, double divergence) {
-                const Material& material = settings.materials[body[i]];
-                if (rows == &stencils.to_faces)
-                    for (int a = 0; a < D; ++a)
-                        divergence += stencils.own_weights[std::size_t{row} * D +
-                                                           static_cast<std::size_t>(a)] *
-                                      velocity[a][i];
-                const double storage = material.storage / settings.time_step;
-                right_[i] = volume[i] * (storage * pressure[i] - divergence);
-                double squares = 0;
-                const double* weight = rows->weights.data() + std::size_t{rows->first[row]} * D;
-                for (std::uint32_t k = 0; k < (rows->first[row + 1] - rows->first[row]) * D; ++k)
-                    squares += weight[k] * weight[k];
-                diagonal_[i] = volume[i] * storage + mobility(material, settings.time_step) * volume[i] *
-                                                         volume[i] / element_volume * squares;
-            });
+            for_each_divergence<D>(
+                *rows, velocity, [&](std::uint32_t row, std::uint32_t i, double divergence) {
+                    const Material& material = settings.materials[body[i]];
+                    if (rows == &stencils.to_faces)
+                        for (int a = 0; a < D; ++a)
+                            divergence +=
+                                stencils.own_weights[std::size_t{row} * D + static_cast<std::size_t>(a)] *
+                                velocity[a][i];
+                    const double storage = material.storage / settings.time_step;
+                    right_[i] = volume[i] * (storage * pressure[i] - divergence);
+                    double squares = 0;
+                    const double* weight = rows->weights.data() + std::size_t{rows->first[row]} * D;
+                    for (std::uint32_t k = 0; k < (rows->first[row + 1] - rows->first[row]) * D; ++k)
+                        squares += weight[k] * weight[k];
+                    diagonal_[i] = volume[i] * storage + mobility(material, settings.time_step) * volume[i] *
+                                                             volume[i] / element_volume * squares;
+                });
     });
 }
 
@@ -200,9 +201,8 @@ void correct_elements_in(ParticleSet& particles, const StencilRows& rows,
 
 void PorePressure::correct_elements(ParticleSet& particles, const StencilRows& rows,
                                     const Settings& settings) {
-    sph::with_dimension(particles, [&](auto dimension) {
-        correct_elements_in<dimension()>(particles, rows, settings);
-    });
+    sph::with_dimension(particles,
+                        [&](auto dimension) { correct_elements_in<dimension()>(particles, rows, settings); });
 }
 
 }  // namespace talus::soil

@@ -19,9 +19,10 @@ namespace talus::soil {
 class PorePressure {
   public:
     struct Settings {
-        double time_step = 0;      ///< [s]
-        double spacing = 0;        ///< [m]
-        double stabilisation = 0;  ///< of what elements cannot see of the pressure, in the unit of the rest [1]
+        double time_step = 0;  ///< [s]
+        double spacing = 0;    ///< [m]
+        double stabilisation =
+            0;  ///< of what elements cannot see of the pressure, in the unit of the rest [1]
         double tolerance = 1e-10;  ///< of the residual, over that of p = 0 [1]
         std::span<const Material> materials;
     };

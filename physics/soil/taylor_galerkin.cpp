@@ -113,9 +113,6 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
         smooth_stress(columns, i, row, settings, memory);
     }
     const StencilRows& faces = stencils.to_faces;
-    const std::uint8_t* on_faces = particles.data(soil_field::faces);
-    const double* water =
-        particles.has(soil_field::pore_pressure) ? particles.data(soil_field::pore_pressure) : nullptr;
     memory.face_velocity.resize(faces.targets.size() * D);
     for (std::uint32_t row = faces.begin(which); row < faces.end(which); ++row) {
         const std::uint32_t i = faces.targets[row];
@@ -123,12 +120,8 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
         const double* weight = faces.weights.data() + std::size_t{faces.first[row]} * D;
         for (std::uint32_t k = faces.first[row]; k < faces.first[row + 1]; ++k, weight += D)
             sums.add_stress(weight, columns.stress, faces.partners[k]);
-        // Across the faces the node's stress is what is imposed; inward turns have no such stress.
-        double own[D];
-        for (unsigned a = 0; a < D; ++a)
-            own[a] = (on_faces[i] >> (2 * a) & 3) != 0 ? stencils.own_weights[std::size_t{row} * D + a] : 0;
-        sums.add_stress(own, columns.stress, i);
-        for (int a = 0; a < D && water; ++a) sums.divergence[a] -= own[a] * water[i];
+        for (int a = 0; a < D; ++a)
+            sums.divergence[a] += memory.tractions[std::size_t{row} * D + static_cast<std::size_t>(a)];
         for (int a = 0; a < D; ++a)
             memory.face_velocity[std::size_t{row} * D + static_cast<std::size_t>(a)] = columns.velocity[a][i];
         accelerate(columns, i, sums, settings.materials[body[i]].density, settings);

@@ -30,6 +30,7 @@ struct StepMemory {
     std::vector<double> unseen;         ///< of each node's state, in order of Stencils::unseen
     std::size_t width = 0;              ///< components of it a node
     std::vector<double> face_velocity;  ///< before the step, in order of Stencils::to_faces
+    std::vector<double> tractions;      ///< of gather_tractions()
     std::vector<double> face_gradient;  ///< of Stencils::face_gradients, D x D a row
 };
 

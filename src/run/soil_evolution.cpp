@@ -52,8 +52,8 @@ std::vector<SnapshotField> SoilEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &soil_field::grid, &soil_field::velocity, &soil_field::displacement, &soil_field::stress,
-             &soil_field::lateral_stress, &soil_field::pore_pressure, &soil_field::viscoplastic_strain, &soil_field::preconsolidation,
-             &field::mass, &field::body})
+             &soil_field::lateral_stress, &soil_field::pore_pressure, &soil_field::viscoplastic_strain,
+             &soil_field::preconsolidation, &field::mass, &field::body})
         if (particles().has(*info)) fields.push_back({.field = info});
     return fields;
 }
@@ -69,9 +69,9 @@ std::vector<CsvColumn> SoilEvolution::diagnostics_columns() const {
                                       {"greatest_viscoplastic_strain", "1"},
                                       {"strength_factor", "1"}};
     if (setup_.simulation.saturated)
-        columns.insert(columns.end(), {{"least_pore_pressure", "Pa"},
-                                       {"greatest_pore_pressure", "Pa"},
-                                       {"pressure_iterations", "1"}});
+        columns.insert(
+            columns.end(),
+            {{"least_pore_pressure", "Pa"}, {"greatest_pore_pressure", "Pa"}, {"pressure_iterations", "1"}});
     const int dimension = setup_.simulation.dimension;
     for (int a = 0; a < dimension; ++a) columns.push_back({fmt::format("momentum_{}", "xyz"[a]), "kg m s-1"});
     constexpr std::array<const char*, 3> units = {"Pa", "N m-1", "N"};

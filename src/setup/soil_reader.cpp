@@ -143,7 +143,8 @@ void read_soil_boundaries(const Section& root, SoilScene& scene) {
         soil::BoundaryCondition condition;
         condition.name = table.text("name", table.path());
         refuse_same_name(table, scene.simulation.conditions, condition.name);
-        const std::string kind = table.choice("kind", {"fixed", "free_slip", "velocity", "traction", "drained"});
+        const std::string kind =
+            table.choice("kind", {"fixed", "free_slip", "velocity", "traction", "drained"});
         if (table.has("face") || kind == "free_slip" || kind == "traction")
             condition.face = read_face(table, dimension);
         condition.kind = Kind::velocity;

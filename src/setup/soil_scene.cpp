@@ -152,8 +152,7 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     soil.jitter = table.number("jitter", "1", 0.0, {0, 0.25});
     setup.saturated = table.flag("saturated", false);
     if (setup.saturated) {
-        setup.pressure_smoothing =
-            table.number("pressure_smoothing", "1", setup.dimension == 1 ? 0 : 1, not_negative);
+        setup.pressure_smoothing = table.number("pressure_smoothing", "1", 0.0, not_negative);
         setup.pressure_tolerance = table.number("pressure_tolerance", "1", 1e-10, {1e-15, 1e-2});
         if (soil.jitter > 0) table.error("jitter", "a saturated soil needs an even lattice");
     }
@@ -276,8 +275,7 @@ void put_node(const SoilScene& scene, ParticleSet& particles, std::uint64_t id,
     for (const std::uint8_t body : node.around)
         if (body != no_body)
             particles.data(field::mass)[i] += share * scene.simulation.materials[body].density;
-    if (particles.has(soil_field::volume))
-        particles.data(soil_field::volume)[i] = share * node.cell_count();
+    if (particles.has(soil_field::volume)) particles.data(soil_field::volume)[i] = share * node.cell_count();
     particles.data(soil_field::faces)[i] = node.faces;
     for (std::size_t c = 0; c < scene.simulation.conditions.size(); ++c)
         if (holds(scene, c, node)) particles.data(soil_field::conditions)[i] |= std::uint32_t{1} << c;

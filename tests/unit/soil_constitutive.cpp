@@ -51,8 +51,7 @@ TEST(SoilVonMises, PureShearRelaxesExponentiallyToTheYieldSurface) {
 }
 
 TEST(SoilVonMises, SofteningEndsAtTheResidualStrength) {
-    const Material material =
-        clay(VonMises{.yield_stress = 1e5, .hardening = -8e6, .residual = 4e4}, 1e5);
+    const Material material = clay(VonMises{.yield_stress = 1e5, .hardening = -8e6, .residual = 4e4}, 1e5);
     Tensor stress{0, 0, 0, 1.5e5, 0, 0};
     History history{.strain = 1};  // far beyond softening
     relax_for(material, 0.05, stress, history);
@@ -114,8 +113,7 @@ TEST(SoilCamClay, ConsolidationMovesTheSurfaceByTheVolumetricStrain) {
 
 TEST(SoilConstitutive, TurnedAxesTurnTheResult) {
     // Objectivity: exchanging axes of the stress exchanges those of the relaxed stress.
-    const Material material =
-        clay(DruckerPrager{.cohesion = 1e4, .friction = 0.6, .dilation = 0.1}, 1e4);
+    const Material material = clay(DruckerPrager{.cohesion = 1e4, .friction = 0.6, .dilation = 0.1}, 1e4);
     Tensor stress{-1e5, -2e5, -4e5, 5e4, 3e4, 1e4}, turned{-2e5, -4e5, -1e5, 1e4, 5e4, 3e4};
     History a, b;
     relax_for(material, 0.001, stress, a);
