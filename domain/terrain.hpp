@@ -1,6 +1,8 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -62,6 +64,10 @@ class Terrain {
     /// Corners of the rectangle between the outermost points; infinite for a plane [m].
     std::array<double, 2> lower() const { return lower_; }
     std::array<double, 2> upper() const { return upper_; }
+    /// Least distance of neighbouring points; infinite for a plane [m].
+    double resolution() const {
+        return is_plane() ? std::numeric_limits<double>::infinity() : std::min(spacing_[0], spacing_[1]);
+    }
     /// "column 3, row 17" of the cell that holds the place, for messages: counted from 1, rows from the
     /// greatest y as in files; "" for a plane or outside.
     std::string cell_name(double x, double y) const;

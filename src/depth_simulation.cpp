@@ -199,7 +199,7 @@ void DepthSimulation::consolidate(std::span<const double> loads_before, double t
 }
 
 void DepthSimulation::conclude_step() {
-    limit_ = depth::stable_time_step(particles_, setup_.settings);
+    limit_ = depth::stable_time_step(particles_, setup_.settings, setup_.terrain->resolution());
     phases_.enter(Phase::wait);
     const double before = time_step_;
     time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);

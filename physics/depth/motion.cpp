@@ -1,5 +1,6 @@
 #include "physics/depth/motion.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -140,15 +141,22 @@ void fade_balance(ParticleSet& particles, double time) {
     }
 }
 
-sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings) {
+sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings, double bed_length) {
     const double *s = particles.data(field::smoothing_length), *signal = particles.data(field::signal_speed);
-    double by_signal = std::numeric_limits<double>::infinity(), by_acceleration = by_signal;
-    std::size_t signal_at = 0, acceleration_at = 0;
+    double by_signal = std::numeric_limits<double>::infinity(), by_acceleration = by_signal,
+           by_bed = by_signal;
+    std::size_t signal_at = 0, acceleration_at = 0, bed_at = 0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        double acceleration2 = 0;
+        double acceleration2 = 0, speed2 = 0;
         for (int axis = 0; axis < particles.dimension(); ++axis) {
-            const double a = particles.data(field::acceleration, axis)[i];
+            const double a = particles.data(field::acceleration, axis)[i],
+                         v = particles.data(field::velocity, axis)[i];
             acceleration2 += a * a;
+            speed2 += v * v;
+        }
+        if (const double step = bed_length / std::sqrt(speed2); step < by_bed) {
+            by_bed = step;
+            bed_at = i;
         }
         if (const double step = s[i] / signal[i]; step < by_signal) {
             by_signal = step;
@@ -162,6 +170,8 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
     by_acceleration = std::sqrt(by_acceleration);
     const std::uint64_t* id = particles.data(field::id);
     if (particles.size() == 0) return {by_signal, 0, "no particles"};
+    if (by_bed < std::min(by_signal, by_acceleration))
+        return {settings.courant * by_bed, id[bed_at], "speed over the terrain"};
     if (by_signal < by_acceleration) return {settings.courant * by_signal, id[signal_at], "signals"};
     return {settings.courant * by_acceleration, id[acceleration_at], "acceleration"};
 }

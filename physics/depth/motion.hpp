@@ -46,7 +46,9 @@ void entrain(ParticleSet& particles, const Settings& settings, double time);
 /// columns as they lay over the bed at the start.
 void fade_balance(ParticleSet& particles, double time);
 
-/// Longest stable step over the own particles: dt = C s / (signal speed) and dt = C sqrt(s/|a|).
-sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings);
+/// Longest stable step over the own particles: dt = C s / (signal speed), dt = C sqrt(s/|a|), and dt = C
+/// L/|v| with the length L over which the bed may change, infinite for a plane [m]: no particle jumps over a
+/// ridge or a hole.
+sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings, double bed_length);
 
 }  // namespace talus::depth

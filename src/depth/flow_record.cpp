@@ -94,10 +94,9 @@ ParticleSet FlowRecord::save(const Communicator& comm) {
     for (std::size_t k = begin; k < end; ++k) {
         const std::size_t index = wet[k], row = k - begin;
         set.data(field::id)[row] = index;
-        set.data(field::position, 0)[row] =
-            frame_.origin[0] + frame_.spacing[0] * static_cast<double>(index % frame_.columns);
-        set.data(field::position, 1)[row] =
-            frame_.origin[1] + frame_.spacing[1] * static_cast<double>(index / frame_.columns);
+        const std::array<double, 2> place = place_of(index);
+        for (int axis = 0; axis < 2; ++axis)
+            set.data(field::position, axis)[row] = place[static_cast<std::size_t>(axis)];
         set.data(field::greatest_depth)[row] = cells_[index].depth;
         set.data(field::greatest_speed)[row] = cells_[index].speed;
         set.data(field::arrival_time)[row] = cells_[index].arrival;
@@ -105,11 +104,19 @@ ParticleSet FlowRecord::save(const Communicator& comm) {
     return set;
 }
 
-void FlowRecord::restore(const ParticleSet& cells) {
-    for (std::size_t k = 0; k < cells.size(); ++k)
-        cells_.at(cells.data(field::id)[k]) = {cells.data(field::greatest_depth)[k],
-                                               cells.data(field::greatest_speed)[k],
-                                               cells.data(field::arrival_time)[k]};
+void FlowRecord::restore(const Communicator& comm, const ParticleSet& cells) {
+    bool known = true;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const std::uint64_t index = cells.data(field::id)[k];
+        const std::array<double, 2> place = place_of(index);
+        known = known && index < cells_.size() && cells.data(field::position, 0)[k] == place[0] &&
+                cells.data(field::position, 1)[k] == place[1];
+        if (!known) break;
+        cells_[index] = {cells.data(field::greatest_depth)[k], cells.data(field::greatest_speed)[k],
+                         cells.data(field::arrival_time)[k]};
+    }
+    comm.all_agree(2,
+                   known ? "" : "the checkpoint holds results of other cells than the scene's [results] has");
 }
 
 TerrainGrid spread_depths(const Communicator& comm, TerrainGrid frame,

@@ -46,14 +46,19 @@ class FlowRecord {
     /// first. Collective.
     ParticleSet save(const Communicator& comm);
     static ParticleSet empty_set();
-    /// Goes on from the rows of a checkpoint, on any ranks.
-    void restore(const ParticleSet& cells);
+    /// Goes on from the rows of a checkpoint, on any ranks. Throws AgreedError (exit code 2) if they are of
+    /// other cells. Collective.
+    void restore(const Communicator& comm, const ParticleSet& cells);
 
   private:
     struct Cell {
         float depth = 0, speed = 0, arrival = std::numeric_limits<float>::infinity();
     };
 
+    std::array<double, 2> place_of(std::uint64_t index) const {
+        return {frame_.origin[0] + frame_.spacing[0] * static_cast<double>(index % frame_.columns),
+                frame_.origin[1] + frame_.spacing[1] * static_cast<double>(index / frame_.columns)};
+    }
     TerrainGrid grid_of(float Cell::*what) const;
     void mark(Cell& cell, const MapColumn& column, double time) const;
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -24,7 +25,9 @@ Decomposition::Ledger Outflow::take(ParticleSet& particles, const Terrain& terra
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const double y_i = y ? y[i] : 0;
         const Terrain::Place where = terrain.place(x[i], y_i);
-        if (where != Terrain::Place::outside) {
+        const bool is_somewhere =
+            std::isfinite(x[i]) && std::isfinite(y_i);  // else it is found as not finite
+        if (where != Terrain::Place::outside || !is_somewhere) {
             kept.push_back(static_cast<std::uint32_t>(i));
             if (where == Terrain::Place::hole && fault.empty())
                 fault = fmt::format(

@@ -52,7 +52,7 @@ ReadCheckpoint DepthEvolution::read(const std::filesystem::path& what,
     if (record_) sets.push_back(&cells);
     found.state = read_checkpoint(comm_, found.file, sets);
     if (record_) {
-        record_->restore(cells);
+        record_->restore(comm_, cells);
         record_->share(comm_);
     }
     simulation_.emplace(comm_, setup_.simulation, std::move(particles));

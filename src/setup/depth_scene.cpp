@@ -92,12 +92,15 @@ void read_releases(const Communicator& comm, const Scene& scene, const SceneTerr
     if (scene.faulty()) return;
     for (std::size_t k = 0; k < table_of.size(); ++k) {
         const Section& table = *table_of[k];
-        const auto [released, beyond, unknown] =
+        const auto [released, beyond, unknown, outside_box] =
             columns_of(setup.releases[k], *setup.simulation.terrain, setup.simulation.settings, box);
         if (unknown)
             table.error("", fmt::format("reaches beyond the terrain, at ({:.6g}, {:.6g}) m {}", (*unknown)[0],
                                         (*unknown)[1],
                                         setup.simulation.terrain->cell_name((*unknown)[0], (*unknown)[1])));
+        else if (outside_box)
+            table.error("", fmt::format("reaches out of the box, at ({:.6g}, {:.6g}) m", (*outside_box)[0],
+                                        (*outside_box)[1]));
         else if (released.empty())
             table.error(table.has("level") ? "level" : "spacing",
                         "has no particles: none of its lattice is wet; make it finer or higher");
@@ -177,7 +180,8 @@ DepthScene read_depth_scene(const Communicator& comm, const Scene& scene) {
     for (const Release& release : setup.releases) widest = std::max(widest, release.spacing);
     const double most_growth = dimension == 1 ? 50 : 5;  // of the smoothing length, where columns fly apart
     simulation.settings.largest_smoothing_length = root.section("depth").number(
-        "largest_smoothing_length", "m", most_growth * simulation.settings.eta * widest, not_negative);
+        "largest_smoothing_length", "m", most_growth * simulation.settings.eta * widest,
+        {simulation.settings.eta * widest});
     setup.output = read_output(root);
     setup.results = read_results(root, terrain, dimension);
     setup.gauges = read_gauge_places(root, *terrain.ground, dimension);

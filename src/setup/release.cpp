@@ -117,9 +117,10 @@ ReleasedColumns columns_of(const Release& release, const Terrain& terrain, const
             const Point place = lattice.place({x, y});
             const bool is_released = lattice.contains(place);
             if (!is_released && !(goes_on && is_in(box, place))) continue;
-            if (!release.level && !columns.unknown && !terrain.contains(place[0], place[1]))
-                columns.unknown = place;
             const double depth = lattice.depth(place);
+            if (!release.level && !columns.unknown && depth > 0 && !terrain.contains(place[0], place[1]))
+                columns.unknown = place;
+            if (!columns.outside_box && depth > 0 && !is_in(box, place)) columns.outside_box = place;
             const ReleasedColumn column{place, depth, lattice.volume(place, depth),
                                         lattice.smoothing_length()};
             (is_released ? columns.released : columns.beyond).push_back(column);

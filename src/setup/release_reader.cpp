@@ -80,6 +80,10 @@ void read_spacing(const Section& table, double area, int dimension, double first
         release.spacing =
             table.number("spacing", "m",
                          first_spacing > 0 ? std::optional<double>(first_spacing) : std::nullopt, positive);
+        constexpr double most = 2e9;
+        if (area > most * std::pow(release.spacing, dimension))
+            table.error("spacing", fmt::format("makes {:.3g} particles; allowed: {:.3g}",
+                                               area / std::pow(release.spacing, dimension), most));
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -47,18 +48,24 @@ SceneTerrain read_profile(const Section& table) {
     if (width.size() == 2 && !(width[0] < width[1]))
         table.error("width", "allowed: least y, then greatest y");
     if (!grows || width.size() != 2 || !(width[0] < width[1])) return terrain;
-    const auto points = [&](double length) {
-        return std::max<std::size_t>(2, static_cast<std::size_t>(length / cell) + 1);
-    };
+    const std::array<double, 2> length{profile[profile.size() - 2] - profile[0], width[1] - width[0]};
+    const std::array<double, 2> cells{std::ceil(length[0] / cell * (1 - 1e-12)),
+                                      std::ceil(length[1] / cell * (1 - 1e-12))};
+    constexpr double most = 1e8;
+    if (!(cells[0] * cells[1] <= most)) {
+        table.error("cell", fmt::format("makes {:.3g} cells; allowed: {:.3g}", cells[0] * cells[1], most));
+        return terrain;
+    }
     TerrainGrid& frame = terrain.frame;
     frame.origin = {profile[0], width[0]};
-    frame.spacing = {cell, cell};
-    frame.columns = points(profile[profile.size() - 2] - profile[0]);
-    frame.rows = points(width[1] - width[0]);
+    frame.spacing = {length[0] / cells[0], length[1] / cells[1]};
+    frame.columns = static_cast<std::size_t>(cells[0]) + 1;
+    frame.rows = static_cast<std::size_t>(cells[1]) + 1;
     TerrainGrid grid = frame;
     for (std::size_t row = 0; row < frame.rows; ++row)
         for (std::size_t column = 0; column < frame.columns; ++column)
-            grid.elevations.push_back(linear(profile, profile[0] + cell * static_cast<double>(column)));
+            grid.elevations.push_back(
+                linear(profile, profile[0] + frame.spacing[0] * static_cast<double>(column)));
     terrain.ground = std::make_shared<Terrain>(std::move(grid));
     return terrain;
 }

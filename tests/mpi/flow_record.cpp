@@ -60,7 +60,7 @@ TEST(FlowRecord, SameBitsFromAnyRanksAndAcrossARestart) {
         if (time == 1) {
             const ParticleSet saved = together.save(comm);
             together = FlowRecord(frame(), 0.1);
-            together.restore(saved);
+            together.restore(comm, saved);
         }
     }
     together.share(comm);
