@@ -3,8 +3,8 @@
 
 namespace talus::field {
 
-inline constexpr Field<double> pore_pressure{
-    "pore_pressure",
+inline constexpr Field<double> excess_pore_pressure{
+    "excess_pore_pressure",
     "Pa",
     profile,
     state,

@@ -42,7 +42,7 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     if (by_level) add({&field::surface_level});
     if (fitted || !level || by_level) add({&field::bed_slope});
     if (fitted) add({&field::apparent_gravity});
-    if (setup.pore_pressure) particles.add(field::pore_pressure, setup.pore_pressure->points);
+    if (setup.pore_pressure) particles.add(field::excess_pore_pressure, setup.pore_pressure->points);
 }
 
 double DepthSimulation::interaction_radius() const {
@@ -187,13 +187,13 @@ std::vector<double> DepthSimulation::loads() const {
 void DepthSimulation::consolidate(std::span<const double> loads_before, double time_step) {
     const PorePressure& model = *setup_.pore_pressure;
     std::vector<double*> pressure;
-    for (int k = 0; k < model.points; ++k) pressure.push_back(particles_.data(field::pore_pressure, k));
+    for (int k = 0; k < model.points; ++k) pressure.push_back(particles_.data(field::excess_pore_pressure, k));
     const std::vector<double> loads_after = loads();
     if (step_ == 0 && time_step == 0) return depth::set_pore_pressure(model.ratio, loads_after, pressure);
     const depth::LoadedColumns columns{std::as_const(particles_).own(field::depth), loads_before,
                                        loads_after};
     if (model.points == 1)
-        depth::consolidate_first_mode(model.law, columns, time_step, particles_.own(field::pore_pressure));
+        depth::consolidate_first_mode(model.law, columns, time_step, particles_.own(field::excess_pore_pressure));
     else
         depth::consolidate_profile(model.law, columns, time_step, pressure);
 }

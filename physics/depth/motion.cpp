@@ -64,7 +64,7 @@ void advance(ParticleSet& particles, const Settings& settings, const Law& law, d
     const auto moved = sph::components_to_write<D>(particles, to);
     const double* depth = particles.data(field::depth);
     const double* pore_pressure =
-        particles.has(field::pore_pressure) ? particles.data(field::pore_pressure) : nullptr;
+        particles.has(field::excess_pore_pressure) ? particles.data(field::excess_pore_pressure) : nullptr;
     const Bed<D> bed(particles, settings);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         std::array<double, D> v_i;

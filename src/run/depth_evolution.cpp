@@ -91,7 +91,7 @@ std::vector<SnapshotField> DepthEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
     for (const FieldInfo* info :
          std::initializer_list<const FieldInfo*>{&field::velocity, &field::depth, &field::volume,
-                                                 &field::smoothing_length, &field::pore_pressure})
+                                                 &field::smoothing_length, &field::excess_pore_pressure})
         if (simulation_->particles().has(*info)) fields.push_back({.field = info});
     return fields;
 }

@@ -24,7 +24,7 @@ inline void add_fields(ParticleSet& set) {
           static_cast<const FieldInfo*>(&field::velocity_gradient),
           static_cast<const FieldInfo*>(&field::pressure)})
         set.add(*info);
-    set.add(field::pore_pressure, 5);
+    set.add(field::excess_pore_pressure, 5);
 }
 
 /// Any bits, those of a particle depending on its id only.
