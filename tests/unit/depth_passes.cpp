@@ -72,7 +72,8 @@ TEST(DepthPasses, ALoneColumnSlidesAsABlock) {
     run.start();
     for (int k = 0; k < 10; ++k) run.step();
     const double along = 9.81 * cosine * (std::sqrt(steepness2) - 0.2), in_plan = along * cosine;
-    const double vx = run.particles().data(field::velocity, 0)[0], vy = run.particles().data(field::velocity, 1)[0];
+    const double vx = run.particles().data(field::velocity, 0)[0],
+                 vy = run.particles().data(field::velocity, 1)[0];
     EXPECT_NEAR(vx, in_plan * run.time() * 0.6 / std::sqrt(steepness2), 1e-12 * vx);
     EXPECT_NEAR(vy, -in_plan * run.time() * 0.3 / std::sqrt(steepness2), 1e-12 * vx);
     const DepthTotals totals = run.totals();
@@ -85,7 +86,8 @@ TEST(DepthPasses, ALoneColumnKeepsItsEnergyInABowl) {
     TerrainGrid grid{{-40, -40}, {0.5, 0.5}, 161, 161, {}};
     for (std::size_t row = 0; row < grid.rows; ++row)
         for (std::size_t column = 0; column < grid.columns; ++column) {
-            const double x = -40 + 0.5 * static_cast<double>(column), y = -40 + 0.5 * static_cast<double>(row);
+            const double x = -40 + 0.5 * static_cast<double>(column),
+                         y = -40 + 0.5 * static_cast<double>(row);
             grid.elevations.push_back(x * x + y * y < 2400 ? -std::sqrt(2500 - x * x - y * y) : -10);
         }
     DepthSetup setup = setup_on(Terrain(std::move(grid)), 2);
