@@ -18,7 +18,7 @@ struct RunState {
     std::string version;         ///< of the program; for information only
     /// Names of the bodies' materials, in order of bodies; empty: not known.
     std::vector<std::string> materials;
-    std::vector<std::string> walls;  ///< their names and kinds, in order
+    std::vector<std::string> walls;  ///< names and kinds of walls or boundaries, in order
     std::map<std::string, double> numbers;
 };
 

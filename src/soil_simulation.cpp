@@ -10,6 +10,7 @@
 #include "comm/exact_sum.hpp"
 #include "domain/box.hpp"
 #include "domain/soil_fields.hpp"
+#include "physics/soil/node_density.hpp"
 
 namespace talus {
 
@@ -33,6 +34,12 @@ int substeps_of(const soil::Material& material, double time_step) {
 
 }  // namespace
 
+bool has_layers(const SoilSetup& setup) {
+    return std::any_of(setup.materials.begin(), setup.materials.end(), [&](const soil::Material& material) {
+        return material.density != setup.materials.front().density;
+    });
+}
+
 void add_fields(ParticleSet& particles, const SoilSetup& setup) {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &soil_field::grid, &soil_field::velocity, &soil_field::stress, &soil_field::displacement,
@@ -44,6 +51,7 @@ void add_fields(ParticleSet& particles, const SoilSetup& setup) {
         particles.add(soil_field::viscoplastic_strain);
         particles.add(soil_field::viscoplastic_work);
     }
+    if (has_layers(setup)) particles.add(soil_field::volume);
     if (setup.saturated) soil::add_pore_fields(particles);
     if (any_cam_clay(setup)) particles.add(soil_field::preconsolidation);
 }
@@ -185,7 +193,7 @@ void SoilSimulation::add_force(const soil::BoundaryNode& node, std::span<ExactSu
     soil::Tensor stress = soil::stress_at(particles_, i);
     if (setup_.saturated)
         for (std::size_t a = 0; a < 3; ++a) stress[a] -= particles_.data(soil_field::pore_pressure)[i];
-    const double density = setup_.materials[particles_.data(field::body)[i]].density;
+    const double density = soil::NodeDensity(particles_, setup_.materials)[i];
     const double area = soil::face_area(particles_.data(field::mass)[i], density, setup_.spacing);
     constexpr int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
     for (std::size_t c = 0; c < setup_.conditions.size(); ++c) {

@@ -36,6 +36,9 @@ struct SoilSetup {
     PartitionMethod partition = PartitionMethod::cheapest;
 };
 
+/// Whether bodies differ in density.
+bool has_layers(const SoilSetup& setup);
+
 /// The fields that the setup's models need besides ids and positions, no more.
 void add_fields(ParticleSet& particles, const SoilSetup& setup);
 

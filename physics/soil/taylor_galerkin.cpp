@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "physics/soil/node_density.hpp"
 #include "physics/soil/state_columns.hpp"
 
 namespace talus::soil {
@@ -96,6 +97,7 @@ template <int D>
 void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells which,
                       const StepSettings& settings, StepMemory& memory) {
     const StateColumns<D> columns(particles);
+    const NodeDensity density(particles, settings.materials);
     const std::uint8_t* body = particles.data(field::body);
     const StencilRows& rows = stencils.to_nodes;
     for (std::uint32_t row = rows.begin(which); row < rows.end(which); ++row) {
@@ -107,7 +109,7 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
             sums.add_velocity(weight, columns.velocity, rows.partners[k]);
             sums.add_stress(weight, columns.stress, rows.partners[k]);
         }
-        accelerate(columns, i, sums, material.density, settings);
+        accelerate(columns, i, sums, density[i], settings);
         columns.add_elastic(i, material.elasticity, sums.gradient, settings.time_step);
         smooth_velocity(columns, i, row, settings, memory);
         smooth_stress(columns, i, row, settings, memory);
@@ -124,7 +126,7 @@ void advance_nodes_in(ParticleSet& particles, const Stencils& stencils, Cells wh
             sums.divergence[a] += memory.tractions[std::size_t{row} * D + static_cast<std::size_t>(a)];
         for (int a = 0; a < D; ++a)
             memory.face_velocity[std::size_t{row} * D + static_cast<std::size_t>(a)] = columns.velocity[a][i];
-        accelerate(columns, i, sums, settings.materials[body[i]].density, settings);
+        accelerate(columns, i, sums, density[i], settings);
         smooth_velocity(columns, i, rows.targets.size() + row, settings, memory);
     }
 }

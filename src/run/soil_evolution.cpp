@@ -24,6 +24,14 @@ std::vector<std::string> SoilEvolution::materials() const {
     return names;
 }
 
+std::vector<std::string> SoilEvolution::boundaries() const {
+    std::vector<std::string> found;
+    for (const soil::BoundaryCondition& condition : setup_.simulation.conditions)
+        found.push_back(fmt::format("{} (kind {}, face {})", condition.name, static_cast<int>(condition.kind),
+                                    condition.face));
+    return found;
+}
+
 ReadCheckpoint SoilEvolution::read(const std::filesystem::path& what,
                                    const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
@@ -36,6 +44,9 @@ ReadCheckpoint SoilEvolution::read(const std::filesystem::path& what,
     if (found.state.materials != materials())
         refuse(fmt::format("is of soil of {}, this scene has {}", fmt::join(found.state.materials, ", "),
                            fmt::join(materials(), ", ")));
+    if (found.state.walls != boundaries())
+        refuse(fmt::format("is of a scene with the boundaries {}; this one has {}",
+                           fmt::join(found.state.walls, ", "), fmt::join(boundaries(), ", ")));
     simulation_.emplace(comm_, setup_.simulation, std::move(particles));
     if (found.state.time_step != simulation_->time_step())
         refuse(
@@ -46,7 +57,10 @@ ReadCheckpoint SoilEvolution::read(const std::filesystem::path& what,
     return found;
 }
 
-void SoilEvolution::describe(RunState& state) const { state.materials = materials(); }
+void SoilEvolution::describe(RunState& state) const {
+    state.materials = materials();
+    state.walls = boundaries();
+}
 
 std::vector<SnapshotField> SoilEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;

@@ -44,6 +44,7 @@ class SoilEvolution : public Evolution {
 
   private:
     std::vector<std::string> materials() const;
+    std::vector<std::string> boundaries() const;  ///< what tells them apart, in order
 
     const Communicator& comm_;
     SoilScene setup_;

@@ -40,6 +40,9 @@ void read_initial_stress(const Section& root, SoilScene& scene) {
     scene.initial_stress.lateral_ratio = table.number("lateral_ratio", "1", {}, not_negative);
     if (!vertical_axis(scene.simulation))
         table.error("surface", "needs soil.gravity along one axis, whose weight it is of");
+    if (has_layers(scene.simulation))
+        table.error("surface",
+                    "allowed for bodies of one density only; start layers without, and let gravity grow");
 }
 
 /// Boxes must fit the lattice: what is cut away would be missing from loads and areas.

@@ -64,7 +64,8 @@ TEST(SoilScene, FaultsAreNamed) {
     expect_fault(replaced("face = \"y_lower\"", "face = \"below\""), "'below' is no face");
     expect_fault(replaced("30 deg", "95 deg"), "friction_angle");
     expect_fault(replaced("kind = \"fixed\"", "kind = \"drained\""), "needs soil.saturated = true");
-    expect_fault(replaced("material = \"clay\"", "material = \"loam\""), "there is no table [materials.loam]");
+    expect_fault(replaced("material = \"clay\"", "material = \"loam\""),
+                 "there is no table [materials.loam]");
     expect_fault(replaced("face = \"y_lower\"", "face = \"y_lower\"\nupper = [-1, 0]"), "holds at no node");
     expect_fault(replaced("[run]", "[initial_stress]\nsurface = 2\nlateral_ratio = 0.5\n[run]"),
                  "needs soil.gravity");

@@ -17,8 +17,9 @@ const std::filesystem::path runs = std::filesystem::path(TALUS_SOURCE_DIR) / "ru
 bool is_root() { return Communicator(MPI_COMM_WORLD).is_root(); }
 
 TEST(SoilCut, StabilityFactorOfAVerticalCut) {
-    // D. W. Taylor and W. Fellenius: 0.261; bounds of limit analysis around 0.2648 (N = 3.776); T. Blanc and M. Pastor
-    // report 0.253 by Taylor-SPH. Failure: the kinetic energy passes 100 J/m, a thousand times that of the creep.
+    // D. W. Taylor and W. Fellenius: 0.261; bounds of limit analysis around 0.2648 (N = 3.776); T. Blanc and
+    // M. Pastor report 0.253 by Taylor-SPH. Failure: the kinetic energy passes 100 J/m, a thousand times that
+    // of the creep.
     const Communicator comm(MPI_COMM_WORLD);
     double yield_stress = 0;
     run_soil(comm, soil_scene(comm, runs / "vertical_cut", {"soil.spacing=1", "run.end_time=12.5"}),
@@ -28,7 +29,8 @@ TEST(SoilCut, StabilityFactorOfAVerticalCut) {
                      yield_stress = 200e3 * simulation.setup().strength_factor(simulation.time());
              });
     const double factor = yield_stress / (std::sqrt(3.0) * 2000 * 9.81 * 10);
-    if (is_root()) fmt::print("yield stress at failure {:.0f} Pa, stability factor {:.4f}\n", yield_stress, factor);
+    if (is_root())
+        fmt::print("yield stress at failure {:.0f} Pa, stability factor {:.4f}\n", yield_stress, factor);
     EXPECT_NEAR(factor, 0.253, 0.05 * 0.253);
 }
 
@@ -48,9 +50,9 @@ TEST(SoilBlock, CheckerboardVelocityDecays) {
     // Elements see nothing of it; without the filter it stays for ever.
     const Communicator alone(MPI_COMM_SELF);
     for (const bool filtered : {true, false}) {
-        SoilScene scene = soil_scene(
-            alone, runs / "saturated_stratum",
-            {"soil.saturated=false", "soil.spacing=0.5", fmt::format("soil.hourglass={}", filtered ? 0.05 : 0.0)});
+        SoilScene scene = soil_scene(alone, runs / "saturated_stratum",
+                                     {"soil.saturated=false", "soil.spacing=0.5",
+                                      fmt::format("soil.hourglass={}", filtered ? 0.05 : 0.0)});
         scene.simulation.conditions.clear();
         ParticleSet soil = make_soil(alone, scene);
         double before = 0, after = 0;
@@ -72,8 +74,8 @@ TEST(SoilBlock, CheckerboardVelocityDecays) {
     }
 }
 
-/// Angle of the band between the weak spot and the other side to the direction of the lateral, lesser stress: a line
-/// through the middles of the viscoplastic strain of each row of nodes.
+/// Angle of the band between the weak spot and the other side to the direction of the lateral, lesser stress:
+/// a line through the middles of the viscoplastic strain of each row of nodes.
 double band_angle(const Communicator& comm, const SoilSimulation& simulation) {
     const ParticleSet& soil = simulation.particles();
     std::vector<double> mine;
@@ -105,15 +107,15 @@ TEST(SoilBand, AngleIsThatOfTheFrictionOnTwoLattices) {
     for (const double spacing : {0.04, 0.02667}) {
         double angle = 0;
         const double fits = spacing > 0.03 ? 0.04 : 0.8 / 30;
-        run_soil(comm,
-                 soil_scene(comm, runs / "shear_band",
-                            {fmt::format("soil.spacing={}", fits), "run.end_time=0.2",
-                             "body[0].lower=[0, 0.56]",
-                             fits < 0.03 ? "body[0].lower=[0, 0.53333333333333333]" : "seed=1",
-                             fits < 0.03 ? "body[0].upper=[0.08, 0.64]" : "seed=1"}),
-                 [&](const SoilSimulation& simulation) {
-                     if (simulation.time() > 0.199 && angle == 0) angle = band_angle(comm, simulation);
-                 });
+        run_soil(
+            comm,
+            soil_scene(comm, runs / "shear_band",
+                       {fmt::format("soil.spacing={}", fits), "run.end_time=0.2", "body[0].lower=[0, 0.56]",
+                        fits < 0.03 ? "body[0].lower=[0, 0.53333333333333333]" : "seed=1",
+                        fits < 0.03 ? "body[0].upper=[0.08, 0.64]" : "seed=1"}),
+            [&](const SoilSimulation& simulation) {
+                if (simulation.time() > 0.199 && angle == 0) angle = band_angle(comm, simulation);
+            });
         if (is_root()) fmt::print("spacing {:.4f} m: band at {:.2f} degrees\n", fits, angle);
         EXPECT_NEAR(angle, 45 + 28.0 / 2, 3);
     }

@@ -21,9 +21,9 @@ const std::filesystem::path runs = std::filesystem::path(TALUS_SOURCE_DIR) / "ru
 
 bool is_root() { return Communicator(MPI_COMM_WORLD).is_root(); }
 
-/// Complex amplitude of the pore pressure over that of the load at depths of a column of 30 m, drained at the top:
-/// u = sum_j A_j exp(lambda_j x), p = sum_j A_j B_j exp(lambda_j x), B = (D lambda^2 + rho w^2)/lambda, for the
-/// skeleton and water moving together (no inertia of the water against the skeleton).
+/// Complex amplitude of the pore pressure over that of the load at depths of a column of 30 m, drained at the
+/// top: u = sum_j A_j exp(lambda_j x), p = sum_j A_j B_j exp(lambda_j x), B = (D lambda^2 + rho w^2)/lambda,
+/// for the skeleton and water moving together (no inertia of the water against the skeleton).
 std::vector<std::complex<double>> zienkiewicz(double permeability, const std::vector<double>& depths) {
     using Complex = std::complex<double>;
     constexpr double length = 30, density = 1666.7, stiffness = 8.333e8, mixture = 3e10,
@@ -67,11 +67,10 @@ struct ColumnErrors {
 ColumnErrors column_errors(double permeability, int elements) {
     constexpr double frequency = 0.5381, period = 1 / frequency;
     const Communicator alone(MPI_COMM_SELF);
-    const SoilScene scene =
-        soil_scene(alone, runs / "saturated_column",
-                   {fmt::format("materials.soil.permeability={}", permeability),
-                    fmt::format("soil.spacing={}", 30.0 / elements), "run.end_time=5.6", "soil.damping=0",
-                    "boundary[1].change.times=[0, 1.86]"});
+    const SoilScene scene = soil_scene(alone, runs / "saturated_column",
+                                       {fmt::format("materials.soil.permeability={}", permeability),
+                                        fmt::format("soil.spacing={}", 30.0 / elements), "run.end_time=5.6",
+                                        "soil.damping=0", "boundary[1].change.times=[0, 1.86]"});
     std::vector<double> depths;
     std::vector<std::complex<double>> sums;
     double count = 0;
@@ -102,12 +101,15 @@ ColumnErrors column_errors(double permeability, int elements) {
 
 TEST(SoilColumn, SixCasesOfZienkiewiczInAmplitudeAndPhase) {
     // Bounds: 1.5 times what was measured; the last two cases have a boundary layer of less than a spacing.
-    const std::array<std::pair<double, double>, 6> cases = {
-        {{5.91e-5, 0.008}, {5.91e-6, 0.008}, {5.91e-7, 0.008}, {5.91e-8, 0.008}, {5.91e-9, 0.012}, {5.91e-10, 0.035}}};
+    const std::array<std::pair<double, double>, 6> cases = {{{5.91e-5, 0.008},
+                                                             {5.91e-6, 0.008},
+                                                             {5.91e-7, 0.008},
+                                                             {5.91e-8, 0.008},
+                                                             {5.91e-9, 0.012},
+                                                             {5.91e-10, 0.035}}};
     for (const auto& [permeability, bound] : cases) {
         const ColumnErrors errors = column_errors(permeability, 20);
-        if (is_root())
-            fmt::print("| {} | {:.5f} | {:.5f} |\n", permeability, errors.amplitude, errors.both);
+        if (is_root()) fmt::print("| {} | {:.5f} | {:.5f} |\n", permeability, errors.amplitude, errors.both);
         EXPECT_LT(errors.both, bound) << permeability;
     }
 }
@@ -125,21 +127,20 @@ TEST(SoilConsolidation, PressureFollowsTerzaghi) {
                      const double depth = 10 - simulation.particles().data(field::position)[i];
                      double exact = 0;
                      for (int n = 0; n < 40; ++n)
-                         exact += 4 / pi * start / (2 * n + 1) * std::sin((2 * n + 1) * pi * depth / 20) *
-                                  std::exp(-std::pow((2 * n + 1) * pi, 2) * coefficient *
-                                           simulation.time() / 400);
-                     worst = std::max(worst, std::abs(simulation.particles().data(
-                                                          soil_field::pore_pressure)[i] -
-                                                      exact) /
-                                                 start);
+                         exact +=
+                             4 / pi * start / (2 * n + 1) * std::sin((2 * n + 1) * pi * depth / 20) *
+                             std::exp(-std::pow((2 * n + 1) * pi, 2) * coefficient * simulation.time() / 400);
+                     worst = std::max(
+                         worst,
+                         std::abs(simulation.particles().data(soil_field::pore_pressure)[i] - exact) / start);
                  }
              });
     if (is_root()) fmt::print("largest error {:.2e} of the first pressure\n", worst);
     EXPECT_LT(worst, 2e-3);
 }
 
-/// Part of the pressures within the load's bulb that changes sign from node to node: the mean of |p - mean of the
-/// four neighbours along the axes| over the mean of |p|, from the third layer down.
+/// Part of the pressures within the load's bulb that changes sign from node to node: the mean of |p - mean of
+/// the four neighbours along the axes| over the mean of |p|, from the third layer down.
 double roughness(const SoilSimulation& simulation, double spacing) {
     const ParticleSet& soil = simulation.particles();
     std::map<std::pair<long, long>, double> pressure;
@@ -151,9 +152,8 @@ double roughness(const SoilSimulation& simulation, double spacing) {
     for (const auto& [at, p] : pressure) {
         const auto [x, y] = at;
         if (x < 2 || y < 2 || !pressure.contains({x + 2, y}) || !pressure.contains({x, y + 3})) continue;
-        const double around = (pressure[{x - 1, y}] + pressure[{x + 1, y}] + pressure[{x, y - 1}] +
-                               pressure[{x, y + 1}]) /
-                              4;
+        const double around =
+            (pressure[{x - 1, y}] + pressure[{x + 1, y}] + pressure[{x, y - 1}] + pressure[{x, y + 1}]) / 4;
         rough += std::abs(p - around);
         size += std::abs(p);
     }
