@@ -187,13 +187,15 @@ std::vector<double> DepthSimulation::loads() const {
 void DepthSimulation::consolidate(std::span<const double> loads_before, double time_step) {
     const PorePressure& model = *setup_.pore_pressure;
     std::vector<double*> pressure;
-    for (int k = 0; k < model.points; ++k) pressure.push_back(particles_.data(field::excess_pore_pressure, k));
+    for (int k = 0; k < model.points; ++k)
+        pressure.push_back(particles_.data(field::excess_pore_pressure, k));
     const std::vector<double> loads_after = loads();
     if (step_ == 0 && time_step == 0) return depth::set_pore_pressure(model.ratio, loads_after, pressure);
     const depth::LoadedColumns columns{std::as_const(particles_).own(field::depth), loads_before,
                                        loads_after};
     if (model.points == 1)
-        depth::consolidate_first_mode(model.law, columns, time_step, particles_.own(field::excess_pore_pressure));
+        depth::consolidate_first_mode(model.law, columns, time_step,
+                                      particles_.own(field::excess_pore_pressure));
     else
         depth::consolidate_profile(model.law, columns, time_step, pressure);
 }
