@@ -9,8 +9,8 @@
 
 namespace talus::soil {
 
-/// Density of nodes [kg/m3]: that of their body, or their mass over their volume if the set knows volumes, as it does where
-/// bodies differ in density, for nodes between two of them have some of both.
+/// Density of nodes [kg/m3]: that of their body, or their mass over their volume if the set knows volumes, as
+/// it does where bodies differ in density, for nodes between two of them have some of both.
 class NodeDensity {
   public:
     NodeDensity(const ParticleSet& particles, std::span<const Material> materials)
@@ -19,7 +19,9 @@ class NodeDensity {
           mass_(particles.data(field::mass)),
           volume_(particles.has(soil_field::volume) ? particles.data(soil_field::volume) : nullptr) {}
 
-    double operator[](std::size_t i) const { return volume_ ? mass_[i] / volume_[i] : materials_[body_[i]].density; }
+    double operator[](std::size_t i) const {
+        return volume_ ? mass_[i] / volume_[i] : materials_[body_[i]].density;
+    }
 
   private:
     std::span<const Material> materials_;
