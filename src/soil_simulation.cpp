@@ -26,12 +26,6 @@ bool any_cam_clay(const SoilSetup& setup) {
     });
 }
 
-/// Steps of the relaxation in a time step: each a fraction of the fastest rate's time.
-int substeps_of(const soil::Material& material, double time_step) {
-    constexpr double most = 1.0;  // Runge-Kutta of fourth order is stable up to 2.78
-    return std::max(1, static_cast<int>(std::ceil(time_step * soil::relaxation_rate(material) / most)));
-}
-
 }  // namespace
 
 bool has_layers(const SoilSetup& setup) {
@@ -65,8 +59,6 @@ SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, Partic
     for (const soil::Material& material : setup_.materials)
         fastest = std::max(fastest, material.wave_speed());
     time_step_ = setup_.courant * setup_.spacing / fastest;
-    for (const soil::Material& material : setup_.materials)
-        substeps_.push_back(substeps_of(material, time_step_));
     double radius = 0;
     for (const double h : std::as_const(particles_).own(field::smoothing_length))
         radius = std::max(radius, soil::search_range * h);
@@ -84,9 +76,15 @@ void SoilSimulation::arrange() {
     decomposition_.halo().begin(
         particles_, {&field::position, &field::smoothing_length, &soil_field::grid, &field::body});
     decomposition_.halo().finish();
-    soil::build_stencils(particles_, decomposition_.table(), smooths() || setup_.pressure_smoothing > 0,
-                         stencils_);
+    soil::build_stencils(particles_, decomposition_.table(), smooths(), stencils_);
     boundary_nodes_ = soil::list_boundary_nodes(particles_, stencils_, setup_.conditions, setup_.spacing);
+    if (setup_.saturated) {
+        free_axes_ = soil::list_free_axes(boundary_nodes_, setup_.conditions, stencils_, setup_.dimension,
+                                          setup_.spacing);
+        const bool any =
+            std::any_of(free_axes_.begin(), free_axes_.end(), [](auto axes) { return axes != 0; });
+        any_free_face_ = comm_.all_max(any ? 1.0 : 0.0) > 0;
+    }
     std::string message;
     if (stencils_.poor > 0)
         message = fmt::format(
@@ -129,19 +127,18 @@ void SoilSimulation::step() {
                                 .damping = setup_.damping,
                                 .hourglass = setup_.hourglass,
                                 .stress_smoothing = setup_.stress_smoothing,
-                                .materials = setup_.materials,
-                                .substeps = substeps_};
+                                .materials = setup_.materials};
     const double gravity = setup_.gravity_factor(time_ + 0.5 * time_step_);
     for (std::size_t a = 0; a < 3; ++a) settings.body_force[a] = gravity * setup_.gravity[a];
     phases_.enter(Phase::material);
-    soil::apply_sources(particles_, stencils_, settings);
+    const std::uint64_t too_fast = soil::apply_sources(particles_, stencils_, settings);
     overlapped(
         {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
         [&](Cells which) { soil::advance_elements(particles_, stencils_.to_elements, which, settings); });
-    if (pore_pressure_) advance_pore_pressure();
-    phases_.enter(Phase::gradients);
     soil::gather_tractions(boundary_nodes_, setup_.conditions, time_ + 0.5 * time_step_, stencils_,
                            setup_.dimension, memory_.tractions);
+    if (pore_pressure_) advance_pore_pressure(settings.body_force);
+    phases_.enter(Phase::gradients);
     soil::gather_face_gradients(particles_, stencils_.face_gradients, memory_);
     if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
     overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces,
@@ -154,21 +151,28 @@ void SoilSimulation::step() {
     if (setup_.dimension == 1) soil::impose_end_stress(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::displace(particles_, stencils_, time_step_);
     pairs_ += stencils_.partner_count();
-    refuse_not_finite();
+    refuse_what_broke(too_fast);
     phases_.stop();
 }
 
-void SoilSimulation::advance_pore_pressure() {
+void SoilSimulation::advance_pore_pressure(const std::array<double, 3>& body_force) {
     phases_.enter(Phase::pressure);
     const soil::PorePressure::Settings settings{.time_step = time_step_,
                                                 .spacing = setup_.spacing,
                                                 .stabilisation = setup_.pressure_smoothing,
                                                 .tolerance = setup_.pressure_tolerance,
-                                                .materials = setup_.materials};
+                                                .materials = setup_.materials,
+                                                .faces = {.any = any_free_face_,
+                                                          .free_axes = free_axes_,
+                                                          .tractions = memory_.tractions,
+                                                          .body_force = body_force}};
     const std::vector<std::uint32_t> imposed =
         soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_ + time_step_);
     Halo& halo = decomposition_.halo();
-    halo.begin(particles_, {&soil_field::velocity});
+    if (any_free_face_)
+        halo.begin(particles_, {&soil_field::velocity, &soil_field::stress});
+    else
+        halo.begin(particles_, {&soil_field::velocity});
     halo.finish();
     pore_pressure_->advance(particles_, stencils_, imposed, settings);
     halo.begin(particles_, {&soil_field::pore_pressure});
@@ -176,15 +180,45 @@ void SoilSimulation::advance_pore_pressure() {
     soil::PorePressure::correct_elements(particles_, stencils_.to_elements, settings);
 }
 
-void SoilSimulation::refuse_not_finite() {
+std::uint64_t SoilSimulation::first_runaway() const {
+    constexpr double most = 10;  // waves' speeds: strains are long not small then
+    const std::uint8_t* body = particles_.data(field::body);
+    std::uint64_t first = soil::no_id;
+    stencils_.for_each_node([&](std::uint32_t i) {
+        double square = 0;
+        for (int a = 0; a < setup_.dimension; ++a)
+            square += std::pow(particles_.data(soil_field::velocity, a)[i], 2);
+        if (square > std::pow(most * setup_.materials[body[i]].wave_speed(), 2))
+            first = std::min(first, particles_.data(field::id)[i]);
+    });
+    return first;
+}
+
+void SoilSimulation::refuse_what_broke(std::uint64_t too_fast) {
     const NotFinite found = find_not_finite(particles_);
+    const std::uint64_t not_finite = found.field ? found.id : soil::no_id, runaway = first_runaway();
+    const std::uint64_t mine = std::min({not_finite, too_fast, runaway});
     phases_.enter(Phase::wait);
-    const std::uint64_t first = comm_.all_min(found.field ? found.id : ~std::uint64_t{0});
-    if (first == ~std::uint64_t{0}) return;
+    const std::uint64_t first = comm_.all_min(mine);
+    if (first == soil::no_id) return;
     std::string message;
-    if (found.field && found.id == first)
-        message = fmt::format("step {}, time {} s: {} of particle {} in set '{}' is not finite", step_, time_,
-                              found.field->name, found.id, particles_.name());
+    if (mine == first) {
+        message = fmt::format("step {}, time {} s: ", step_, time_);
+        if (first == not_finite)
+            message += fmt::format("{} of particle {} in set '{}' is not finite", found.field->name, first,
+                                   particles_.name());
+        else if (first == too_fast)
+            message += fmt::format(
+                "the stress of particle {} returns to its yield surface in less than a "
+                "10000th of a time step of {} s; a smaller 'fluidity' or 'exponent' of its "
+                "material's yield",
+                first, time_step_);
+        else
+            message += fmt::format(
+                "particle {} moves at more than 10 times the speed of waves in it; the run "
+                "has blown up, or the soil has failed",
+                first);
+    }
     comm_.all_agree(1, message);
 }
 

@@ -64,7 +64,8 @@ class SoilSimulation {
     void start();
     /// Goes on from a checkpoint's state. Collective.
     void resume(double time, std::uint64_t step);
-    /// One time step. Throws AgreedError (exit code 1) if a value is not finite. Collective.
+    /// One time step. Throws AgreedError (exit code 1) if a value is not finite, a node is faster
+    /// than 10 waves, or stress relaxes too fast. Collective.
     void step();
 
     double time() const { return time_; }            ///< [s]
@@ -89,11 +90,12 @@ class SoilSimulation {
 
   private:
     bool smooths() const { return setup_.hourglass > 0 || setup_.stress_smoothing > 0; }
-    void advance_pore_pressure();
+    void advance_pore_pressure(const std::array<double, 3>& body_force);
     void arrange();
     template <class Pass>
     void overlapped(std::initializer_list<const FieldInfo*> fields, Phase phase, Pass&& pass);
-    void refuse_not_finite();
+    std::uint64_t first_runaway() const;
+    void refuse_what_broke(std::uint64_t too_fast);
     void add_force(const soil::BoundaryNode& node, std::span<class ExactSum> sums) const;
 
     const Communicator& comm_;
@@ -103,9 +105,10 @@ class SoilSimulation {
     std::unique_ptr<CellGrid> grid_;
     soil::Stencils stencils_;
     std::vector<soil::BoundaryNode> boundary_nodes_;
+    std::vector<std::uint8_t> free_axes_;  ///< of soil::list_free_axes()
+    bool any_free_face_ = false;           ///< on any rank
     soil::StepMemory memory_;
     std::optional<soil::PorePressure> pore_pressure_;
-    std::vector<int> substeps_;  ///< one a material
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     Phases phases_;

@@ -49,6 +49,12 @@ struct BoundaryNode {
 std::vector<BoundaryNode> list_boundary_nodes(const ParticleSet& particles, const Stencils& stencils,
                                               std::span<const BoundaryCondition> conditions, double spacing);
 
+/// Axes along which nodes on faces move as they will and the divergence there depends on it, bit a for axis
+/// a, in order of Stencils::to_faces; none where a pore pressure is imposed.
+std::vector<std::uint8_t> list_free_axes(std::span<const BoundaryNode> nodes,
+                                         std::span<const BoundaryCondition> conditions,
+                                         const Stencils& stencils, int dimension, double spacing);
+
 /// Imposes velocities at `time` on nodes.
 void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nodes,
                        std::span<const BoundaryCondition> conditions, double time);

@@ -68,10 +68,11 @@ Yielding DruckerPrager::at(const Tensor& stress, const History& history, double 
     Yielding found{root + surface.alpha * trace(stress) - surface.k_over_cohesion * now, {}};
     if (found.excess <= 0) return found;
     const double along = cone(dilation, fit).alpha;
-    // Where no shear is left, beyond the apex, only a change of volume leads back.
-    const bool at_apex = !(root > 1e-9 * found.excess);
-    for (std::size_t k = 0; k < 6; ++k)
-        found.flow[k] = (at_apex ? 0 : s[k] / (2 * root)) + (k < 3 ? (at_apex ? surface.alpha : along) : 0);
+    // Beyond the apex shear cannot lead back. There the flow turns from the potential's, on the apex's mean
+    // stress, to a change of volume alone, where no shear is left.
+    const double beyond = std::max(0.0, found.excess - root);
+    const double volume = along + (surface.alpha - along) * beyond / found.excess;
+    for (std::size_t k = 0; k < 6; ++k) found.flow[k] = s[k] / (2 * (root + beyond)) + (k < 3 ? volume : 0);
     return found;
 }
 
@@ -137,42 +138,47 @@ Point rate_of(const Surface& surface, const Material& material, double strength_
 }
 
 template <class Surface>
-void relax_on(const Surface& surface, const Material& material, double strength_factor, double time_step,
-              int substeps, Tensor& stress, History& history) {
-    if (surface.at(stress, history, strength_factor).excess <= 0) return;
+double rate_at(const Surface& surface, const Material& material, double excess) {
+    const Overstress& law = material.overstress;
+    return law.fluidity * law.exponent * surface.fastest_rate(material.elasticity) / law.reference *
+           (law.exponent == 1 ? 1 : std::pow(excess / law.reference, law.exponent - 1));
+}
+
+template <class Surface>
+bool relax_on(const Surface& surface, const Material& material, double strength_factor, double time_step,
+              Tensor& stress, History& history) {
+    constexpr int most_substeps = 10000;
     const auto rate = [&](const Point& at) { return rate_of(surface, material, strength_factor, at); };
     Point now{stress, history};
-    const double dt = time_step / substeps;
-    for (int k = 0; k < substeps; ++k) {
+    double left = time_step, enough = 0;
+    for (int k = 0; left > 0; ++k) {
+        const double excess = surface.at(now.stress, now.history, strength_factor).excess;
+        if (!(excess > enough)) break;
+        if (k == 0) enough = 1e-9 * excess + 1e-12 * std::sqrt(contraction(stress, stress));  // of rounding
+        // Each a fraction of the fastest rate's time: Runge-Kutta of fourth order is stable up to 2.78.
+        const double steps = std::max(1.0, std::ceil(left * rate_at(surface, material, excess)));
+        if (k == most_substeps || !std::isfinite(steps)) return false;
+        const double dt = left / steps;
         const Point k1 = rate(now), k2 = rate(now.plus(dt / 2, k1)), k3 = rate(now.plus(dt / 2, k2)),
                     k4 = rate(now.plus(dt, k3));
         now = now.plus(dt / 6, k1.plus(2, k2).plus(2, k3).plus(1, k4));
+        left = steps > 1 ? left - dt : 0;
     }
     stress = now.stress;
     history = now.history;
+    return true;
 }
 
 }  // namespace
 
-void relax(const Material& material, double strength_factor, double time_step, int substeps, Tensor& stress,
+bool relax(const Material& material, double strength_factor, double time_step, Tensor& stress,
            History& history) {
-    std::visit(
-        [&]<class Surface>(const Surface& surface) {
-            if constexpr (!std::is_same_v<Surface, Elastic>)
-                relax_on(surface, material, strength_factor, time_step, substeps, stress, history);
-        },
-        material.surface);
-}
-
-double relaxation_rate(const Material& material) {
-    const Overstress& law = material.overstress;
     return std::visit(
         [&]<class Surface>(const Surface& surface) {
             if constexpr (std::is_same_v<Surface, Elastic>)
-                return 0.0;
+                return true;
             else
-                return law.fluidity * law.exponent * surface.fastest_rate(material.elasticity) /
-                       law.reference;
+                return relax_on(surface, material, strength_factor, time_step, stress, history);
         },
         material.surface);
 }

@@ -61,11 +61,13 @@ struct VonMises {
     double residual = 0;      ///< [Pa]
 
     Yielding at(const Tensor& stress, const History& history, double strength_factor) const;
+    /// Of return from beyond the surface, over fluidity / reference [Pa].
     double fastest_rate(const Elasticity& elasticity) const;
 };
 
 /// F = sqrt(J2) + alpha I1 - k of a cohesion and an angle of friction; the flow has its own angle.
-/// D. C. Drucker, W. Prager, Quart. Appl. Math. 10 (1952) 157.
+/// D. C. Drucker, W. Prager, Quart. Appl. Math. 10 (1952) 157. Tension beyond the apex of the cone relaxes to
+/// it whatever the dilation.
 struct DruckerPrager {
     /// Which Mohr-Coulomb surface the cone fits: in plane strain with flow, or outer or inner edges in 3D.
     enum class Fit : unsigned char { plane_strain, outer, inner };
@@ -117,12 +119,11 @@ struct Material {
     bool flows() const { return !std::holds_alternative<Elastic>(surface); }
 };
 
-/// Relaxes the stress at a fixed strain over `time_step`: Runge-Kutta of fourth order in `substeps`
-/// steps, each of which should be short against 1 / relaxation_rate(). Nothing happens within the surface.
-void relax(const Material& material, double strength_factor, double time_step, int substeps, Tensor& stress,
+/// Relaxes the stress at a fixed strain over `time_step`: Runge-Kutta of fourth order in steps short against
+/// the time in which the stress returns from as far beyond the surface as it is. Nothing happens within the
+/// surface. False, with nothing done, if it took more than 10000 steps or they are too short for
+/// numbers.
+bool relax(const Material& material, double strength_factor, double time_step, Tensor& stress,
            History& history);
-
-/// Fastest rate at which a stress beyond the surface returns, estimated [1/s].
-double relaxation_rate(const Material& material);
 
 }  // namespace talus::soil

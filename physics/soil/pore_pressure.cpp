@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "comm/exact_sum.hpp"
@@ -19,18 +20,22 @@ double mobility(const Material& material, double time_step) {
     return material.permeability + 0.5 * time_step / material.density;
 }
 
+/// Flux of elements, and in the place of their guess the mean of the nodes' guesses.
 template <int D>
 void flux_of_elements(ParticleSet& particles, const StencilRows& rows, Cells which,
                       const PorePressure::Settings& settings) {
-    const double* guess = particles.data(soil_field::pressure_guess);
+    double* guess = particles.data(soil_field::pressure_guess);
     const std::uint8_t* body = particles.data(field::body);
     const auto flux = sph::components_to_write<D>(particles, soil_field::pressure_flux);
     for (std::uint32_t row = rows.begin(which); row < rows.end(which); ++row) {
         const std::uint32_t i = rows.targets[row];
-        double gradient[D] = {};
+        double value = 0, gradient[D] = {};
         const double* weight = rows.weights.data() + std::size_t{rows.first[row]} * (D + 1);
-        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k, weight += D + 1)
+        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k, weight += D + 1) {
+            value += weight[0] * guess[rows.partners[k]];
             for (int a = 0; a < D; ++a) gradient[a] += weight[1 + a] * guess[rows.partners[k]];
+        }
+        guess[i] = value;
         const double factor = mobility(settings.materials[body[i]], settings.time_step);
         for (int a = 0; a < D; ++a) flux[a][i] = factor * gradient[a];
     }
@@ -65,36 +70,100 @@ double PorePressure::dot(const Stencils& stencils, std::span<const double> a,
     return sum.value();
 }
 
+namespace {
+
+/// Mean over the elements around nodes of their mobility times what the linear fit there does not see.
+template <int D>
+void add_unseen(const ParticleSet& particles, const StencilRows& rows, const PorePressure::Settings& settings,
+                std::vector<double>& product) {
+    const double* guess = particles.data(soil_field::pressure_guess);
+    const double* volume = particles.data(soil_field::volume);
+    const std::uint8_t* body = particles.data(field::body);
+    const auto flux = sph::components<D>(particles, soil_field::pressure_flux);
+    const auto position = sph::components<D>(particles, field::position);
+    for (std::uint32_t row = 0; row < rows.targets.size(); ++row) {
+        const std::uint32_t i = rows.targets[row];
+        double found = 0;
+        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k) {
+            const std::uint32_t e = rows.partners[k];
+            found += mobility(settings.materials[body[e]], settings.time_step) * (guess[i] - guess[e]);
+            for (int a = 0; a < D; ++a) found -= flux[a][e] * (position[a][i] - position[a][e]);
+        }
+        product[i] += volume[i] * settings.stabilisation / (settings.spacing * settings.spacing) * found /
+                      (rows.first[row + 1] - rows.first[row]);
+    }
+}
+
+/// What the velocity of nodes on free faces half a step ahead, by the pressure of the elements, adds to the
+/// divergence there.
+template <int D>
+void add_free_faces(const ParticleSet& particles, const Stencils& stencils,
+                    const PorePressure::Settings& settings, std::vector<double>& product) {
+    const double* guess = particles.data(soil_field::pressure_guess);
+    const double* volume = particles.data(soil_field::volume);
+    const std::uint8_t* body = particles.data(field::body);
+    const StencilRows& rows = stencils.to_faces;
+    for (std::uint32_t row = 0; row < rows.targets.size(); ++row) {
+        const std::uint32_t i = rows.targets[row];
+        const double* own = stencils.own_weights.data() + std::size_t{row} * D;
+        double gradient[D] = {}, found = 0;
+        const double* weight = rows.weights.data() + std::size_t{rows.first[row]} * D;
+        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k, weight += D)
+            for (int a = 0; a < D; ++a) gradient[a] += weight[a] * guess[rows.partners[k]];
+        for (int a = 0; a < D; ++a)
+            if (settings.faces.free_axes[row] >> a & 1) found += own[a] * gradient[a];
+        product[i] -= volume[i] * 0.5 * settings.time_step / settings.materials[body[i]].density * found;
+    }
+}
+
+/// Velocity that a node on a face has half a step ahead but for the pore pressure.
+template <int D>
+std::array<double, D> face_velocity(const StateColumns<D>& columns, const Stencils& stencils,
+                                    std::uint32_t row, double density,
+                                    const PorePressure::Settings& settings) {
+    const StencilRows& rows = stencils.to_faces;
+    std::array<double, D> velocity;
+    for (int a = 0; a < D; ++a)
+        velocity[static_cast<std::size_t>(a)] = columns.velocity[a][rows.targets[row]];
+    if (!settings.faces.any || settings.faces.free_axes[row] == 0) return velocity;
+    FluxSums<D> sums;
+    const double* weight = rows.weights.data() + std::size_t{rows.first[row]} * D;
+    for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k, weight += D)
+        sums.add_stress(weight, columns.stress, rows.partners[k]);
+    for (std::size_t a = 0; a < D; ++a)
+        if (settings.faces.free_axes[row] >> a & 1)
+            velocity[a] +=
+                0.5 * settings.time_step *
+                ((sums.divergence[a] + settings.faces.tractions[std::size_t{row} * D + a]) / density +
+                 settings.faces.body_force[a]);
+    return velocity;
+}
+
+}  // namespace
+
 /// The matrix times the guess, of free nodes.
 void PorePressure::apply(ParticleSet& particles, const Stencils& stencils, const Settings& settings) {
     halo_.begin(particles, {&soil_field::pressure_guess});
-    const double* guess = particles.data(soil_field::pressure_guess);
-    const double* volume = particles.data(soil_field::volume);
     const std::uint8_t* body = particles.data(field::body);
     sph::with_dimension(particles, [&](auto dimension) {
         constexpr int D = dimension();
         flux_of_elements<D>(particles, stencils.to_elements, Cells::interior, settings);
         halo_.finish();
         flux_of_elements<D>(particles, stencils.to_elements, Cells::boundary, settings);
-        halo_.begin(particles, {&soil_field::pressure_flux});
+        halo_.begin(particles, {&soil_field::pressure_flux, &soil_field::pressure_guess});
         halo_.finish();
+        const double* guess = particles.data(soil_field::pressure_guess);
+        const double* volume = particles.data(soil_field::volume);
         const auto flux = sph::components<D>(particles, soil_field::pressure_flux);
-        for (const StencilRows* rows : {&stencils.to_nodes, &stencils.to_faces})
+        for (const StencilRows* rows : {&stencils.to_nodes, &stencils.to_faces}) {
             for_each_divergence<D>(*rows, flux, [&](std::uint32_t, std::uint32_t i, double divergence) {
                 const double storage = settings.materials[body[i]].storage / settings.time_step;
                 product_[i] = volume[i] * (storage * guess[i] - divergence);
             });
+            if (settings.stabilisation > 0) add_unseen<D>(particles, *rows, settings, product_);
+        }
+        if (settings.faces.any) add_free_faces<D>(particles, stencils, settings, product_);
     });
-    const StencilRows& unseen = stencils.unseen;
-    for (std::size_t row = 0; row < unseen.targets.size() && settings.stabilisation > 0; ++row) {
-        const std::uint32_t i = unseen.targets[row];
-        double found = 0;
-        for (std::uint32_t k = unseen.first[row]; k < unseen.first[row + 1]; ++k)
-            found += unseen.weights[k] * guess[unseen.partners[k]];
-        product_[i] += volume[i] * settings.stabilisation *
-                       mobility(settings.materials[body[i]], settings.time_step) /
-                       (settings.spacing * settings.spacing) * found;
-    }
     stencils.for_each_node([&](std::uint32_t i) {
         if (!is_free_[i]) product_[i] = 0;
     });
@@ -106,26 +175,39 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
     const double* volume = particles.data(soil_field::volume);
     const std::uint8_t* body = particles.data(field::body);
     sph::with_dimension(particles, [&](auto dimension) {
-        constexpr int D = dimension();
+        constexpr int D = dimension(), corners = 1 << D;
         const double element_volume = std::pow(settings.spacing, D);
+        const double unseen =
+            settings.stabilisation / (settings.spacing * settings.spacing) * (corners - 1 - D) / corners;
+        const StateColumns<D> columns(particles);
         const auto velocity = sph::components<D>(particles, soil_field::velocity);
         for (const StencilRows* rows : {&stencils.to_nodes, &stencils.to_faces})
             for_each_divergence<D>(
                 *rows, velocity, [&](std::uint32_t row, std::uint32_t i, double divergence) {
                     const Material& material = settings.materials[body[i]];
-                    if (rows == &stencils.to_faces)
-                        for (int a = 0; a < D; ++a)
-                            divergence +=
-                                stencils.own_weights[std::size_t{row} * D + static_cast<std::size_t>(a)] *
-                                velocity[a][i];
                     const double storage = material.storage / settings.time_step;
-                    right_[i] = volume[i] * (storage * pressure[i] - divergence);
-                    double squares = 0;
+                    double squares = 0, mobilities = 0, own_squares = 0;
                     const double* weight = rows->weights.data() + std::size_t{rows->first[row]} * D;
-                    for (std::uint32_t k = 0; k < (rows->first[row + 1] - rows->first[row]) * D; ++k)
-                        squares += weight[k] * weight[k];
-                    diagonal_[i] = volume[i] * storage + mobility(material, settings.time_step) * volume[i] *
-                                                             volume[i] / element_volume * squares;
+                    for (std::uint32_t k = rows->first[row]; k < rows->first[row + 1]; ++k, weight += D) {
+                        const double factor =
+                            mobility(settings.materials[body[rows->partners[k]]], settings.time_step);
+                        mobilities += factor / (rows->first[row + 1] - rows->first[row]);
+                        for (int a = 0; a < D; ++a) squares += factor * weight[a] * weight[a];
+                    }
+                    if (rows == &stencils.to_faces) {
+                        const double* own = stencils.own_weights.data() + std::size_t{row} * D;
+                        const std::array<double, D> face =
+                            face_velocity<D>(columns, stencils, row, material.density, settings);
+                        for (std::size_t a = 0; a < D; ++a) {
+                            divergence += own[a] * face[a];
+                            if (settings.faces.any && (settings.faces.free_axes[row] >> a & 1))
+                                own_squares += own[a] * own[a];
+                        }
+                    }
+                    right_[i] = volume[i] * (storage * pressure[i] - divergence);
+                    diagonal_[i] =
+                        volume[i] * (storage + volume[i] / element_volume * squares + unseen * mobilities +
+                                     0.5 * settings.time_step / material.density * own_squares / corners);
                 });
     });
 }
@@ -150,15 +232,30 @@ void PorePressure::advance(ParticleSet& particles, const Stencils& stencils,
         product_[i] = is_free_[i] ? right_[i] / diagonal_[i] : 0;
     });
     const double scale = std::max(dot(stencils, right_, product_), dot(stencils, residual_, conditioned_));
-    double rest = dot(stencils, residual_, conditioned_);
     const double enough = settings.tolerance * settings.tolerance * scale;
-    for (iterations_ = 0; rest > enough; ++iterations_) {
-        if (iterations_ == most_iterations || !std::isfinite(rest))
-            throw AgreedError(1, fmt::format("the pore pressure does not converge: after {} iterations the "
-                                             "residual is {:.3g} of its first",
-                                             iterations_, std::sqrt(rest / scale)));
+    iterations_ = 0;
+    if (settings.faces.any)
+        stabilised_biconjugate_gradients(particles, stencils, settings, enough);
+    else
+        conjugate_gradients(particles, stencils, settings, enough);
+}
+
+void PorePressure::refuse_unless_converging(double rest, double enough, const Settings& settings) const {
+    if (iterations_ < most_iterations && std::isfinite(rest)) return;
+    throw AgreedError(1, fmt::format("the pore pressure does not converge: after {} iterations the "
+                                     "residual is {:.3g} of its first",
+                                     iterations_, settings.tolerance * std::sqrt(rest / enough)));
+}
+
+void PorePressure::conjugate_gradients(ParticleSet& particles, const Stencils& stencils,
+                                       const Settings& settings, double enough) {
+    double* pressure = particles.data(soil_field::pore_pressure);
+    double* guess = particles.data(soil_field::pressure_guess);
+    double rest = dot(stencils, residual_, conditioned_);
+    for (; rest > enough; ++iterations_) {
+        refuse_unless_converging(rest, enough, settings);
         apply(particles, stencils, settings);
-        const double step = rest / dot(stencils, {guess, size}, product_);
+        const double step = rest / dot(stencils, {guess, particles.size()}, product_);
         stencils.for_each_node([&](std::uint32_t i) {
             pressure[i] += step * guess[i];
             residual_[i] -= step * product_[i];
@@ -168,6 +265,45 @@ void PorePressure::advance(ParticleSet& particles, const Stencils& stencils,
         rest = dot(stencils, residual_, conditioned_);
         stencils.for_each_node(
             [&](std::uint32_t i) { guess[i] = conditioned_[i] + rest / before * guess[i]; });
+    }
+}
+
+void PorePressure::stabilised_biconjugate_gradients(ParticleSet& particles, const Stencils& stencils,
+                                                    const Settings& settings, double enough) {
+    const std::size_t size = particles.size();
+    double* pressure = particles.data(soil_field::pore_pressure);
+    double* guess = particles.data(soil_field::pressure_guess);
+    // Products of residuals are weighted by the inverse of the diagonal.
+    const std::vector<double> shadow = conditioned_;
+    std::vector<double> direction = residual_, image(size, 0);
+    double rest = dot(stencils, residual_, conditioned_), along = rest;
+    for (; rest > enough; ++iterations_) {
+        refuse_unless_converging(rest, enough, settings);
+        stencils.for_each_node([&](std::uint32_t i) { guess[i] = direction[i] / diagonal_[i]; });
+        apply(particles, stencils, settings);
+        image = product_;
+        const double step = along / dot(stencils, shadow, image);
+        stencils.for_each_node([&](std::uint32_t i) {
+            pressure[i] += step * guess[i];
+            residual_[i] -= step * image[i];
+            guess[i] = residual_[i] / diagonal_[i];
+        });
+        apply(particles, stencils, settings);
+        stencils.for_each_node([&](std::uint32_t i) { conditioned_[i] = product_[i] / diagonal_[i]; });
+        const double square = dot(stencils, product_, conditioned_);
+        const double turn = square > 0 ? dot(stencils, residual_, conditioned_) / square : 0;
+        stencils.for_each_node([&](std::uint32_t i) {
+            pressure[i] += turn * guess[i];
+            residual_[i] -= turn * product_[i];
+            conditioned_[i] = residual_[i] / diagonal_[i];
+        });
+        rest = dot(stencils, residual_, conditioned_);
+        if (rest <= enough) continue;
+        const double before = along;
+        along = dot(stencils, shadow, residual_);
+        const double keep = along / before * step / turn;
+        stencils.for_each_node(
+            [&](std::uint32_t i) { direction[i] = residual_[i] + keep * (direction[i] - turn * image[i]); });
     }
 }
 

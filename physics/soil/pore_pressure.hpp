@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,9 +16,19 @@ namespace talus::soil {
 /// nodes, velocities of elements half a step ahead,
 ///   V p/(Q dt) - V div((k_w + dt/(2 rho)) grad p) = V p_n/(Q dt) - V div v*,
 /// whose divergence is the adjoint of the gradient, so that the matrix is symmetric. No pressure gradient
-/// drives water through a face unless a pressure is imposed there.
+/// drives water through a face unless a pressure is imposed there. Free faces (FreeFaces) add rows to the
+/// matrix that are not symmetric; it is then solved by stabilised biconjugate gradients (H. A. van der Vorst,
+/// SIAM J. Sci. Stat. Comput. 13 (1992) 631).
 class PorePressure {
   public:
+    /// Nodes on faces that nothing holds and where no pressure is imposed: their velocity too is taken half a
+    /// step ahead, with the new pressure. Explicit, the stiffness of the water would make them unstable.
+    struct FreeFaces {
+        bool any = false;                         ///< on any rank
+        std::span<const std::uint8_t> free_axes;  ///< of each row of Stencils::to_faces, bit a: along axis a
+        std::span<const double> tractions;        ///< of gather_tractions()
+        std::array<double, 3> body_force{};       ///< [m/s2]
+    };
     struct Settings {
         double time_step = 0;  ///< [s]
         double spacing = 0;    ///< [m]
@@ -25,14 +36,15 @@ class PorePressure {
             0;  ///< of what elements cannot see of the pressure, in the unit of the rest [1]
         double tolerance = 1e-10;  ///< of the residual, over that of p = 0 [1]
         std::span<const Material> materials;
+        FreeFaces faces;
     };
 
     PorePressure(const Communicator& comm, Halo& halo) : comm_(comm), halo_(halo) {}
 
     /// Takes the nodes' pressures to the end of the step by conjugate gradients; dot products are exact sums,
     /// so that bits do not depend on ranks. `imposed`: nodes whose pressure is given. Elements and their
-    /// copies hold v*, as do nodes on faces the velocity there. Throws AgreedError if it does not converge.
-    /// Collective.
+    /// copies hold v*, and with free faces the effective stress, as do nodes on faces the velocity there.
+    /// Throws AgreedError if it does not converge. Collective.
     void advance(ParticleSet& particles, const Stencils& stencils, std::span<const std::uint32_t> imposed,
                  const Settings& settings);
     /// Corrects the elements' velocity by the new pressure and makes their stress the total one. Call once
@@ -43,6 +55,11 @@ class PorePressure {
 
   private:
     void apply(ParticleSet& particles, const Stencils& stencils, const Settings& settings);
+    void conjugate_gradients(ParticleSet& particles, const Stencils& stencils, const Settings& settings,
+                             double enough);
+    void stabilised_biconjugate_gradients(ParticleSet& particles, const Stencils& stencils,
+                                          const Settings& settings, double enough);
+    void refuse_unless_converging(double rest, double enough, const Settings& settings) const;
     void prepare(ParticleSet& particles, const Stencils& stencils, const Settings& settings);
     double dot(const Stencils& stencils, std::span<const double> a, std::span<const double> b) const;
 

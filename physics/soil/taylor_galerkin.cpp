@@ -1,5 +1,6 @@
 #include "physics/soil/taylor_galerkin.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/soil/node_density.hpp"
@@ -156,7 +157,8 @@ void advance_face_stress_in(ParticleSet& particles, const Stencils& stencils, co
 }
 
 template <int D>
-void apply_sources_in(ParticleSet& particles, const Stencils& stencils, const StepSettings& settings) {
+std::uint64_t apply_sources_in(ParticleSet& particles, const Stencils& stencils,
+                               const StepSettings& settings) {
     const StateColumns<D> columns(particles);
     if (settings.damping > 0) {
         const double left = std::exp(-settings.damping * settings.time_step);
@@ -164,7 +166,8 @@ void apply_sources_in(ParticleSet& particles, const Stencils& stencils, const St
             for (int a = 0; a < D; ++a) columns.velocity[a][i] *= left;
         });
     }
-    if (!particles.has(soil_field::viscoplastic_strain)) return;
+    std::uint64_t too_fast = no_id;
+    if (!particles.has(soil_field::viscoplastic_strain)) return too_fast;
     const std::uint8_t* body = particles.data(field::body);
     double* strain = particles.data(soil_field::viscoplastic_strain);
     double* work = particles.data(soil_field::viscoplastic_work);
@@ -175,20 +178,24 @@ void apply_sources_in(ParticleSet& particles, const Stencils& stencils, const St
         if (!material.flows()) return;
         Tensor stress = columns.stress_at(i);
         History history{strain[i], work[i], size ? size[i] : 0};
-        relax(material, settings.strength_factor, settings.time_step, settings.substeps[body[i]], stress,
-              history);
+        if (!relax(material, settings.strength_factor, settings.time_step, stress, history))
+            too_fast = std::min(too_fast, particles.data(field::id)[i]);
         columns.put_stress(i, stress);
         strain[i] = history.strain;
         work[i] = history.work;
         if (size) size[i] = history.preconsolidation;
     });
+    return too_fast;
 }
 
 }  // namespace
 
-void apply_sources(ParticleSet& particles, const Stencils& stencils, const StepSettings& settings) {
-    sph::with_dimension(
-        particles, [&](auto dimension) { apply_sources_in<dimension()>(particles, stencils, settings); });
+std::uint64_t apply_sources(ParticleSet& particles, const Stencils& stencils, const StepSettings& settings) {
+    std::uint64_t too_fast = no_id;
+    sph::with_dimension(particles, [&](auto dimension) {
+        too_fast = apply_sources_in<dimension()>(particles, stencils, settings);
+    });
+    return too_fast;
 }
 
 void gather_unseen(ParticleSet& particles, const StencilRows& rows, const StepSettings& settings,

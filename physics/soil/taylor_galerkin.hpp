@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,8 @@ namespace talus::soil {
 // state half a step later, from which nodes take the fluxes of the full step. Here both interpolations are
 // exact for linear fields; the body force is not a source but added in both steps (decision 020).
 
+inline constexpr std::uint64_t no_id = ~std::uint64_t{0};
+
 /// What a step needs besides the particles.
 struct StepSettings {
     double time_step = 0;                ///< [s]
@@ -22,7 +25,6 @@ struct StepSettings {
     /// Share of what elements cannot see of the velocity and of the stress that is taken away a step [1].
     double hourglass = 0, stress_smoothing = 0;
     std::span<const Material> materials;  ///< one a body
-    std::span<const int> substeps;        ///< of each material's relaxation
 };
 
 /// What a step remembers between its parts.
@@ -34,8 +36,9 @@ struct StepMemory {
     std::vector<double> face_gradient;  ///< of Stencils::face_gradients, D x D a row
 };
 
-/// Sources: nodes' stress relaxes beyond the yield surface, velocities are damped.
-void apply_sources(ParticleSet& particles, const Stencils& stencils, const StepSettings& settings);
+/// Sources: nodes' stress relaxes beyond the yield surface, velocities are damped. The least id of a node
+/// whose stress returns too fast for relax(), or no_id.
+std::uint64_t apply_sources(ParticleSet& particles, const Stencils& stencils, const StepSettings& settings);
 
 /// What no element sees of the nodes' state, as far as some of it is to be taken away.
 void gather_unseen(ParticleSet& particles, const StencilRows& rows, const StepSettings& settings,

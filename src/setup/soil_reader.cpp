@@ -104,9 +104,6 @@ soil::TimeFactor read_time_factor(const Section& table, std::string_view key) {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> face_names = {"x_lower", "x_upper", "y_lower",
-                                                        "y_upper", "z_lower", "z_upper"};
-
 soil::Face read_face(const Section& table, int dimension) {
     const std::string name = table.text("face");
     const auto found = std::find(face_names.begin(), face_names.begin() + 2 * dimension, name);

@@ -1,10 +1,16 @@
 #pragma once
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "io/scene.hpp"
 #include "src/setup/soil_scene.hpp"
 
 namespace talus {
+
+/// Of soil::Face.
+inline constexpr std::array<std::string_view, 6> face_names = {"x_lower", "x_upper", "y_lower",
+                                                               "y_upper", "z_lower", "z_upper"};
 
 // Parts of a scene of soil. Faults are recorded in the scene.
 

@@ -1,6 +1,7 @@
 #include "src/setup/soil_scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -132,6 +133,7 @@ void read_soil_bodies(const Communicator& comm, const Scene& scene, SoilScene& s
 }
 
 bool holds_somewhere(const SoilScene& scene, std::size_t condition);
+void refuse_free_tight_faces(const Section& table, const SoilScene& scene);
 
 }  // namespace
 
@@ -177,6 +179,7 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     const std::vector<Section> boundaries = root.sections("boundary");
     for (std::size_t c = 0; c < boundaries.size() && !scene.faulty(); ++c)
         if (!holds_somewhere(soil, c)) boundaries[c].error("", "holds at no node of the soil");
+    if (setup.saturated && setup.dimension > 1 && !scene.faulty()) refuse_free_tight_faces(table, soil);
     scene.finish();
     return soil;
 }
@@ -217,6 +220,33 @@ bool holds_somewhere(const SoilScene& scene, std::size_t condition) {
     for_each_node(scene.lattice,
                   [&](const SoilLattice::Node& node) { found = found || holds(scene, condition, node); });
     return found;
+}
+
+/// In more than one dimension the step of the pore pressure is not stable where water cannot leave through a
+/// face that moves as it will.
+void refuse_free_tight_faces(const Section& table, const SoilScene& scene) {
+    const std::vector<soil::BoundaryCondition>& conditions = scene.simulation.conditions;
+    std::string found;
+    for_each_node(scene.lattice, [&](const SoilLattice::Node& node) {
+        for (soil::Face face = 0; face < 2 * scene.lattice.dimension && found.empty(); ++face) {
+            if (!(node.faces >> face & 1)) continue;
+            bool good = false;
+            for (std::size_t c = 0; c < conditions.size() && !good; ++c)
+                good = (conditions[c].kind == soil::BoundaryCondition::Kind::pore_pressure ||
+                        conditions[c].held[static_cast<std::size_t>(soil::axis_of(face))]) &&
+                       holds(scene, c, node);
+            if (good) continue;
+            const Point at = scene.lattice.corner(node.index);
+            found = fmt::format(
+                "the face {} at ({}) m has neither a velocity along {} nor a pore pressure: "
+                "it needs a [[boundary]] of kind 'drained', or one that holds it ('fixed', "
+                "'free_slip', 'velocity')",
+                face_names[static_cast<std::size_t>(face)],
+                fmt::join(at.begin(), at.begin() + scene.lattice.dimension, ", "),
+                "xyz"[soil::axis_of(face)]);
+        }
+    });
+    if (!found.empty()) table.error("saturated", found);
 }
 
 /// Place of a node, moved at random within the soil.
