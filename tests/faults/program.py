@@ -53,6 +53,41 @@ class BadInput(Case):
         done = talus("check", self.scene(text.replace("gravity = ", "# gravity = ")), "--quick", ranks=0)
         self.assert_fails(done, 2, r"body\[0\]\.geostatic.*needs sph\.gravity")
 
+    def test_saturated_soil_with_a_tight_face_that_nothing_holds(self):
+        done = talus("check", RUNS / "saturated_stratum", "--quick", "--set", "boundary[4].kind=traction",
+                     "--set", "boundary[4].traction=[0,0]", "--set", "boundary[4].name=other", ranks=0)
+        self.assert_fails(done, 2, r"soil\.saturated.*face y_upper at \(.*'drained'")
+
+    def test_soil_that_blows_up_stops(self):
+        for setting, pattern in (("velocity=[2000]", r"particle \d+ moves at more than 10 times"),
+                                 ("velocity=[0.1]", r"particle \d+ (returns to its yield surface too fast|.*is not finite)")):
+            scene = self.scene("""dimension = 1
+[soil]
+spacing = 0.5
+[materials.a]
+density = 2000
+youngs_modulus = 1e7
+poisson_ratio = 0.2
+[materials.a.yield]
+kind = "von_mises"
+yield_stress = 1e3
+fluidity = 1e308
+[[body]]
+name = "a"
+material = "a"
+shape = "box"
+lower = [0]
+upper = [10]
+[[boundary]]
+name = "top"
+kind = "velocity"
+face = "x_upper"
+""" + setting + """
+[run]
+end_time = 1
+""")
+            self.assert_fails(talus("run", scene, "--out", self.out, ranks=2), 1, pattern)
+
     def test_scenes_that_cannot_run(self):
         wave, tube = RUNS / "acoustic_wave", RUNS / "sod_tube"
         reach = r"scene\.toml:\d+: box\.upper = .*along x, where it is closed, shorter than the interaction radius"
