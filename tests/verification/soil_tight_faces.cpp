@@ -16,17 +16,17 @@ namespace {
 const std::filesystem::path runs = std::filesystem::path(TALUS_SOURCE_DIR) / "runs";
 
 TEST(SaturatedSoil, LoadedThroughATightFaceTheWaterBearsItsShare) {
-    // Undrained and damped, uniaxial: p = load Q / (Q + M), M of the drained soil. The node on the face errs by
-    // an element's share.
+    // Undrained and damped, uniaxial: p = load Q / (Q + M), M of the drained soil. The node on the face errs
+    // by an element's share.
     const Communicator alone(MPI_COMM_SELF);
     const double stiffness = 30e6 * 0.8 / (1.2 * 0.6), water = 333.3e6;
     const double exact = 5e3 * water / (water + stiffness);
     std::vector<double> errors;
     for (const double spacing : {0.5, 0.25}) {
-        const SoilScene scene = soil_scene(alone, runs / "consolidation",
-                                           {"boundary[2].kind=traction", "boundary[2].traction=[-5e3]",
-                                            "boundary[1].traction=[-5e3]", "materials.soil.permeability=1e-4",
-                                            fmt::format("soil.spacing={}", spacing), "run.end_time=2"});
+        const SoilScene scene = soil_scene(
+            alone, runs / "consolidation",
+            {"boundary[2].kind=traction", "boundary[2].traction=[-5e3]", "boundary[1].traction=[-5e3]",
+             "materials.soil.permeability=1e-4", fmt::format("soil.spacing={}", spacing), "run.end_time=2"});
         double mean = 0, fastest = 0;
         run_soil(alone, scene, [&](const SoilSimulation& simulation) {
             if (simulation.time() < 2) return;
@@ -51,10 +51,11 @@ TEST(SaturatedSoil, PressureAnswersAlikeBothWaysWherePermeabilityJumps) {
     const std::string other = "density=2000,youngs_modulus=1e7,poisson_ratio=0.2,mixture_stiffness=1e9";
     const SoilScene scene = soil_scene(
         alone, runs / "saturated_stratum",
-        {"soil.pressure_smoothing=0.3", "body=[{name=\"a\",material=\"soil\",shape=\"box\",lower=[0,0],upper=[2,1]},"
+        {"soil.pressure_smoothing=0.3",
+         "body=[{name=\"a\",material=\"soil\",shape=\"box\",lower=[0,0],upper=[2,1]},"
          "{name=\"b\",material=\"b\",shape=\"box\",lower=[0,1],upper=[2,2]}]",
-         "materials.soil.permeability=1e-3", "materials.soil.mixture_stiffness=1e9", "materials.b={permeability=1e-10," + other + "}",
-         "soil.spacing=0.5", "boundary[0].upper=[1,5]"});
+         "materials.soil.permeability=1e-3", "materials.soil.mixture_stiffness=1e9",
+         "materials.b={permeability=1e-10," + other + "}", "soil.spacing=0.5", "boundary[0].upper=[1,5]"});
     const auto response = [&](std::uint64_t source, std::uint64_t at) {
         SoilSimulation simulation(alone, scene.simulation, make_soil(alone, scene));
         simulation.start();
