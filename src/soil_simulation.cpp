@@ -209,9 +209,9 @@ void SoilSimulation::refuse_what_broke(std::uint64_t too_fast) {
                                    particles_.name());
         else if (first == too_fast)
             message += fmt::format(
-                "the stress of particle {} returns to its yield surface in less than a "
-                "10000th of a time step of {} s; a smaller 'fluidity' or 'exponent' of its "
-                "material's yield",
+                "the stress of particle {} returns to its yield surface too fast for "
+                "10000 steps within {} s: choose a smaller 'fluidity' or 'exponent' in its "
+                "material's table 'yield'",
                 first, time_step_);
         else
             message += fmt::format(
