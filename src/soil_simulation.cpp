@@ -11,6 +11,7 @@
 #include "domain/box.hpp"
 #include "domain/soil_fields.hpp"
 #include "physics/soil/node_density.hpp"
+#include "src/step_support.hpp"
 
 namespace talus {
 
@@ -108,19 +109,6 @@ void SoilSimulation::resume(double time, std::uint64_t step) {
     arrange();
 }
 
-template <class Pass>
-void SoilSimulation::overlapped(std::initializer_list<const FieldInfo*> fields, Phase phase, Pass&& pass) {
-    Halo& halo = decomposition_.halo();
-    phases_.enter(Phase::halo);
-    halo.begin(particles_, fields);
-    phases_.enter(phase);
-    pass(Cells::interior);
-    phases_.enter(Phase::halo);
-    halo.finish();
-    phases_.enter(phase);
-    pass(Cells::boundary);
-}
-
 void SoilSimulation::step() {
     soil::StepSettings settings{.time_step = time_step_,
                                 .strength_factor = setup_.strength_factor(time_),
@@ -132,16 +120,18 @@ void SoilSimulation::step() {
     for (std::size_t a = 0; a < 3; ++a) settings.body_force[a] = gravity * setup_.gravity[a];
     phases_.enter(Phase::material);
     const std::uint64_t too_fast = soil::apply_sources(particles_, stencils_, settings);
-    overlapped(
-        {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, Phase::gradients,
-        [&](Cells which) { soil::advance_elements(particles_, stencils_.to_elements, which, settings); });
+    overlapped(phases_, Phase::gradients, decomposition_.halo(), particles_,
+               {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, [&](Cells which) {
+                   soil::advance_elements(particles_, stencils_.to_elements, which, settings);
+               });
     soil::gather_tractions(boundary_nodes_, setup_.conditions, time_ + 0.5 * time_step_, stencils_,
                            setup_.dimension, memory_.tractions);
     if (pore_pressure_) advance_pore_pressure(settings.body_force);
     phases_.enter(Phase::gradients);
     soil::gather_face_gradients(particles_, stencils_.face_gradients, memory_);
     if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
-    overlapped({&soil_field::velocity, &soil_field::stress}, Phase::forces,
+    overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
+               {&soil_field::velocity, &soil_field::stress},
                [&](Cells which) { soil::advance_nodes(particles_, stencils_, which, settings, memory_); });
     phases_.enter(Phase::motion);
     ++step_;

@@ -92,8 +92,6 @@ class SoilSimulation {
     bool smooths() const { return setup_.hourglass > 0 || setup_.stress_smoothing > 0; }
     void advance_pore_pressure(const std::array<double, 3>& body_force);
     void arrange();
-    template <class Pass>
-    void overlapped(std::initializer_list<const FieldInfo*> fields, Phase phase, Pass&& pass);
     std::uint64_t first_runaway() const;
     void refuse_what_broke(std::uint64_t too_fast);
     void add_force(const soil::BoundaryNode& node, std::span<class ExactSum> sums) const;
