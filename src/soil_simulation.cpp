@@ -164,7 +164,12 @@ void SoilSimulation::advance_pore_pressure(const std::array<double, 3>& body_for
     else
         halo.begin(particles_, {&soil_field::velocity});
     halo.finish();
-    pore_pressure_->advance(particles_, stencils_, imposed, settings);
+    try {
+        pore_pressure_->advance(particles_, stencils_, imposed, settings);
+    } catch (const AgreedError&) {
+        refuse_what_broke(soil::no_id);  // a particle that is not finite says more
+        throw;
+    }
     halo.begin(particles_, {&soil_field::pore_pressure});
     halo.finish();
     soil::PorePressure::correct_elements(particles_, stencils_.to_elements, settings);
@@ -236,6 +241,7 @@ SoilTotals SoilSimulation::totals() const {
     extremes[3] = extremes[4] = -std::numeric_limits<double>::infinity();
     const double* m = particles_.data(field::mass);
     const std::uint8_t* body = particles_.data(field::body);
+    const soil::NodeDensity density(particles_, setup_.materials);
     const double* water = setup_.saturated ? particles_.data(soil_field::pore_pressure) : nullptr;
     const bool flows = particles_.has(soil_field::viscoplastic_strain);
     stencils_.for_each_node([&](std::uint32_t i) {
@@ -248,7 +254,7 @@ SoilTotals SoilSimulation::totals() const {
             way2 += u * u;
         }
         const soil::Material& material = setup_.materials[body[i]];
-        const double volume = m[i] / material.density;
+        const double volume = m[i] / density[i];
         sums[mass].add(m[i]);
         sums[kinetic].add(0.5 * m[i] * speed2);
         sums[elastic].add(volume * material.elasticity.energy(soil::stress_at(particles_, i)));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "comm/exact_sum.hpp"
+#include "physics/soil/node_density.hpp"
 #include "physics/soil/state_columns.hpp"
 
 namespace talus::soil {
@@ -101,7 +102,7 @@ void add_free_faces(const ParticleSet& particles, const Stencils& stencils,
                     const PorePressure::Settings& settings, std::vector<double>& product) {
     const double* guess = particles.data(soil_field::pressure_guess);
     const double* volume = particles.data(soil_field::volume);
-    const std::uint8_t* body = particles.data(field::body);
+    const NodeDensity density(particles, settings.materials);
     const StencilRows& rows = stencils.to_faces;
     for (std::uint32_t row = 0; row < rows.targets.size(); ++row) {
         const std::uint32_t i = rows.targets[row];
@@ -112,7 +113,7 @@ void add_free_faces(const ParticleSet& particles, const Stencils& stencils,
             for (int a = 0; a < D; ++a) gradient[a] += weight[a] * guess[rows.partners[k]];
         for (int a = 0; a < D; ++a)
             if (settings.faces.free_axes[row] >> a & 1) found += own[a] * gradient[a];
-        product[i] -= volume[i] * 0.5 * settings.time_step / settings.materials[body[i]].density * found;
+        product[i] -= volume[i] * 0.5 * settings.time_step / density[i] * found;
     }
 }
 
@@ -180,12 +181,12 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
         const double unseen =
             settings.stabilisation / (settings.spacing * settings.spacing) * (corners - 1 - D) / corners;
         const StateColumns<D> columns(particles);
+        const NodeDensity density(particles, settings.materials);
         const auto velocity = sph::components<D>(particles, soil_field::velocity);
         for (const StencilRows* rows : {&stencils.to_nodes, &stencils.to_faces})
             for_each_divergence<D>(
                 *rows, velocity, [&](std::uint32_t row, std::uint32_t i, double divergence) {
-                    const Material& material = settings.materials[body[i]];
-                    const double storage = material.storage / settings.time_step;
+                    const double storage = settings.materials[body[i]].storage / settings.time_step;
                     double squares = 0, mobilities = 0, own_squares = 0;
                     const double* weight = rows->weights.data() + std::size_t{rows->first[row]} * D;
                     for (std::uint32_t k = rows->first[row]; k < rows->first[row + 1]; ++k, weight += D) {
@@ -197,7 +198,7 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
                     if (rows == &stencils.to_faces) {
                         const double* own = stencils.own_weights.data() + std::size_t{row} * D;
                         const std::array<double, D> face =
-                            face_velocity<D>(columns, stencils, row, material.density, settings);
+                            face_velocity<D>(columns, stencils, row, density[i], settings);
                         for (std::size_t a = 0; a < D; ++a) {
                             divergence += own[a] * face[a];
                             if (settings.faces.any && (settings.faces.free_axes[row] >> a & 1))
@@ -207,7 +208,7 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
                     right_[i] = volume[i] * (storage * pressure[i] - divergence);
                     diagonal_[i] =
                         volume[i] * (storage + volume[i] / element_volume * squares + unseen * mobilities +
-                                     0.5 * settings.time_step / material.density * own_squares / corners);
+                                     0.5 * settings.time_step / density[i] * own_squares / corners);
                 });
     });
 }

@@ -7,8 +7,13 @@
 namespace talus {
 
 Cone cone(ConeMatch match, double cohesion, double friction_angle, double dilation_angle) {
-    const double s = std::sin(friction_angle), c = cohesion * std::cos(friction_angle);
-    const double flow = std::sin(dilation_angle);
+    return cone_of_slopes(match, cohesion, std::tan(friction_angle), std::tan(dilation_angle));
+}
+
+Cone cone_of_slopes(ConeMatch match, double cohesion, double friction_slope, double dilation_slope) {
+    const double cosine = 1 / std::sqrt(1 + friction_slope * friction_slope);
+    const double s = friction_slope * cosine, c = cohesion * cosine;
+    const double flow = dilation_slope / std::sqrt(1 + dilation_slope * dilation_slope);
     if (match == ConeMatch::plane_strain) {
         const double b = flow / std::sqrt(9 + 3 * flow * flow);
         const double share = 1 / (std::sqrt(1 - 3 * b * b) + b * s);

@@ -34,6 +34,8 @@ enum class ConeMatch : std::uint8_t {
 /// (sqrt(1 - 3 b^2) + b sin phi) = c cos phi + p sin phi; for psi = phi the cone of D. C. Drucker, W. Prager,
 /// Q. Appl. Math. 10 (1952) 157, for psi = 0 tau = c cos phi + p sin phi.
 Cone cone(ConeMatch match, double cohesion, double friction_angle, double dilation_angle);
+/// The same from the tangents of the angles.
+Cone cone_of_slopes(ConeMatch match, double cohesion, double friction_slope, double dilation_slope);
 
 // What becomes of gaps that open under tension beyond the strength, `forgets_gaps`. True: matter keeps the
 // density at which it opened, as the return to an apex does, and bears pressure as soon as it is compressed
