@@ -121,10 +121,10 @@ def snapshot_series(folder):
     return series
 
 
-def read_diagnostics(folder):
-    """{name: (unit, values)} from diagnostics.csv; empty if there is none. Rows that were cut short or
-    written again after a restart are dropped, the last of equal steps kept."""
-    path = Path(folder) / "diagnostics.csv"
+def read_diagnostics(folder, name="diagnostics.csv"):
+    """{name: (unit, values)} from diagnostics.csv or another table of times; empty if there is none. Rows that
+    were cut short or written again after a restart are dropped, the last of equal steps kept."""
+    path = Path(folder) / name
     if not path.is_file():
         return {}
     with open(path, newline="", encoding="utf-8") as file:

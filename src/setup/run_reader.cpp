@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace talus {
 
@@ -38,6 +39,22 @@ Box read_box(const Section& table, int dimension) {
     return box;
 }
 
+void read_references(const Section& root) {
+    for (const Section& reference : root.sections("reference")) {
+        reference.text("name");
+        const std::string file = reference.text("file", "diagnostics.csv");
+        if (const std::filesystem::path path = file;
+            path.has_parent_path() || (path.extension() != ".csv" && path.extension() != ".json"))
+            reference.error("file",
+                            fmt::format("'{}' is not the name of a .csv or .json file of the output", file));
+        reference.text("figure");
+        reference.number("value", "");
+        reference.number("uncertainty", "", 0.0, {0});
+        if (reference.has("time")) reference.number("time", "s");
+        reference.text("source");
+    }
+}
+
 OutputPlan read_output(const Section& root) {
     constexpr Range not_negative{0};
     const Section run = root.section("run"), output = root.section("output");
@@ -46,6 +63,7 @@ OutputPlan read_output(const Section& root) {
     plan.snapshot_interval = output.number("snapshots", "s", 0.0, not_negative);
     plan.diagnostics_interval = output.number("diagnostics", "s", 0.0, not_negative);
     plan.checkpoint_interval = output.number("checkpoints", "s", 1800.0, not_negative);
+    read_references(root);
     return plan;
 }
 

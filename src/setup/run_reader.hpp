@@ -11,7 +11,10 @@ namespace talus {
 /// The table [box].
 Box read_box(const Section& table, int dimension);
 
-/// The tables [run] and [output]: when a run ends and what it writes.
+/// The tables [[reference]], that tools/report compares a run with: the program only checks them.
+void read_references(const Section& root);
+
+/// The tables [run], [output] and [[reference]]: when a run ends and what it writes.
 OutputPlan read_output(const Section& root);
 
 /// Of the table [run].
