@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "comm/communicator.hpp"
+#include "domain/random.hpp"
 #include "physics/sph/kernels.hpp"
 #include "src/setup/packing.hpp"
 #include "src/simulation.hpp"
@@ -16,6 +17,8 @@
 namespace talus::test {
 
 struct LatticeCase {
+    sph::Formulation formulation = sph::Formulation::godunov;
+    sph::KernelKind kernel = sph::KernelKind::gaussian;
     int dimension = 1;
     Point size{};  ///< of the box
     Lattice lattice = Lattice::cubic;
@@ -155,6 +158,9 @@ class LatticeSimulation {
         setup.box = {.dimension = dimension, .upper = lattice_.size};
         for (int a = 0; a < dimension; ++a)
             setup.box.boundary[static_cast<std::size_t>(a)] = Boundary::periodic;
+        setup.sph.formulation = lattice_.formulation;
+        setup.sph.kernel = lattice_.kernel;
+        setup.sph.viscosity_alpha = setup.sph.viscosity_beta = 0;
         setup.sph.cutoff = lattice_.cutoff;
         setup.sph.compressed = lattice_.compressed;
         setup.sph.stretched = lattice_.stretched;
@@ -194,5 +200,26 @@ class LatticeSimulation {
     std::vector<Point> sites_;
     Simulation run_;
 };
+
+/// Least distance between two particles after some sound crossings of a slightly disordered box, or as soon
+/// as they have clumped; in units of that in the lattice.
+inline double closest_after(const Communicator& comm, const LatticeCase& lattice, double crossings) {
+    static constexpr RandomStream noise{.seed = 3};
+    LatticeSimulation box(
+        comm, lattice,
+        [](std::uint64_t id, const Point&) {
+            Point d{};
+            for (std::uint32_t a = 0; a < 3; ++a) d[a] = 0.01 * (2 * noise.uniform(id, a) - 1);
+            return d;
+        },
+        [](std::uint64_t, const Point&) { return Point{}; });
+    const double lattice_distance = box.closest_sites();
+    double closest = 1;
+    while (box.run().time() < crossings * lattice.size[0] && closest > 0.5) {
+        for (int step = 0; step < 10; ++step) box.run().step();
+        closest = box.closest_pair() / lattice_distance;
+    }
+    return closest;
+}
 
 }  // namespace talus::test

@@ -29,7 +29,7 @@ double hertz_tangent_stiffness(double effective_modulus, double effective_radius
 
 double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
                             double damping_ratio) {
-    const double ratio = tangential_stiffness / normal_stiffness;
+    const double ratio = 2 * tangential_stiffness / normal_stiffness;
     const double square_of_frequency = std::max(8 * (1 + ratio), 40 * ratio) * normal_stiffness / mass;
     const double damped = std::sqrt(1 + damping_ratio * damping_ratio) - damping_ratio;
     return 2 / std::sqrt(square_of_frequency) * damped;

@@ -21,10 +21,11 @@ double hertz_collision_time(double effective_modulus, double effective_radius, d
 double hertz_tangent_stiffness(double effective_modulus, double effective_radius, double overlap);
 
 /// Greatest stable step of the leapfrog in packed grains whose every contact is a spring [s]: closest packing
-/// of equal spheres, 12 contacts each, that move and turn, omega^2 = max(8 (1 + k_t/k_n), 40 k_t/k_n) k_n/m
-/// (the greatest eigenvalue of the packing's dynamical matrix over all wave vectors; from k_t = k_n/4 on it
-/// is that of all grains turning alike). Damping of ratio xi = gamma/(2 sqrt(k_n m)) lowers it by sqrt(1 +
-/// xi^2) - xi.
+/// of equal spheres, 12 contacts each, that move and turn, omega^2 = max(8 (1 + r), 40 r) k_n/m (the greatest
+/// eigenvalue of the packing's dynamical matrix over all wave vectors; from r = 1/4 on it is that of all
+/// grains turning alike). r = 2 k_t/k_n: tangential springs advance by velocities predicted to the end of
+/// the step, and at the wall, where motion changes sign each step, such a spring acts twice as stiff. Damping
+/// of ratio xi = gamma/(2 sqrt(k_n m)) lowers it by sqrt(1 + xi^2) - xi.
 double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
                             double damping_ratio);
 

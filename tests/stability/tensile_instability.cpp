@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "domain/random.hpp"
 #include "tests/support/lattice_simulation.hpp"
+#include "tests/support/shared_cases.hpp"
 
 /// The tensile instability: stretched (or, for some interpolations, compressed) lattices that clump.
 /// K. Sugiura, S. Inutsuka, J. Comput. Phys. 308 (2016) 171.
@@ -39,25 +39,6 @@ LatticeCase with_interpolation(int dimension, Interpolation kind, double pressur
             .pressure = pressure,
             .compressed = kind,
             .stretched = kind};
-}
-
-/// Results of `cases` small runs, each done by one rank alone.
-template <class Run>
-std::vector<double> on_shared_ranks(std::size_t cases, Run&& run) {
-    const Communicator world(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
-    const auto ranks = static_cast<std::size_t>(world.size()), rank = static_cast<std::size_t>(world.rank());
-    std::vector<double> mine;
-    for (std::size_t k = rank; k < cases; k += ranks) mine.push_back(run(alone, k));
-    mine.resize((cases + ranks - 1) / ranks);
-    const std::vector<double> all = world.all_gather(std::span<const double>(mine));
-    std::vector<double> results;
-    for (std::size_t k = 0; k < cases; ++k) results.push_back(all[k % ranks * mine.size() + k / ranks]);
-    return results;
-}
-bool is_root() {
-    int rank = 0;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    return rank == 0;
 }
 
 class TensileInstability : public testing::TestWithParam<int> {};
@@ -159,27 +140,6 @@ TEST_P(TensileInstability, ModesGrowAndSwingAtTheRatesOfTheDispersionRelation) {
                        name_of(cases[c].compressed), cases[c].pressure, fastest_mode(cases[c]) * 2.0 / length,
                        theory(c) < 0 ? "grows" : "swings", measured[c], rate, 100 * (measured[c] / rate - 1));
     }
-}
-
-/// Least distance between two particles after some sound crossings of a slightly disordered box, or as soon
-/// as they have clumped; in units of that in the lattice.
-double closest_after(const Communicator& comm, const LatticeCase& lattice, double crossings) {
-    static constexpr RandomStream noise{.seed = 3};
-    LatticeSimulation box(
-        comm, lattice,
-        [](std::uint64_t id, const Point&) {
-            Point d{};
-            for (std::uint32_t a = 0; a < 3; ++a) d[a] = 0.01 * (2 * noise.uniform(id, a) - 1);
-            return d;
-        },
-        nothing);
-    const double lattice_distance = box.closest_sites();
-    double closest = 1;
-    while (box.run().time() < crossings * lattice.size[0] && closest > 0.5) {
-        for (int step = 0; step < 10; ++step) box.run().step();
-        closest = box.closest_pair() / lattice_distance;
-    }
-    return closest;
 }
 
 /// Each sign of the pressure: the automatic choice without any dissipation; a fluid and a solid as scenes
