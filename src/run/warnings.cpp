@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace talus {
 
@@ -52,6 +55,52 @@ void warn_of_thin_wall(const Body& wall, const sph::Settings& sph, int dimension
                     wall.name, thickness, range));
 }
 
+/// Partners within the kernel's support, on average.
+double partners(const sph::Settings& sph, int dimension) {
+    const double reach = sph.kernel_support() * sph.eta;  // [spacings]
+    if (dimension == 1) return 2 * reach;
+    if (dimension == 2) return std::numbers::pi * reach * reach;
+    return 4.0 / 3 * std::numbers::pi * reach * reach * reach;
+}
+
+/// W. Dehnen, H. Aly, MNRAS 425 (2012) 1068; tests/stability/lattices.cpp.
+void warn_of_pairing(const sph::Settings& sph, int dimension, std::vector<std::string>& found) {
+    constexpr double most = 55;
+    const double number = partners(sph, dimension);
+    if (sph.kernel != sph::KernelKind::cubic_spline || dimension < 3 || number <= most) return;
+    found.push_back(fmt::format(
+        "sph.kernel = \"cubic_spline\" with {:.0f} partners (sph.eta = {}): beyond {:.0f} compressed "
+        "matter forms pairs; kernel = \"wendland_c2\" does not, or eta = {:.2f}",
+        number, sph.eta, most, sph.eta * std::cbrt(most / number)));
+}
+
+/// K. Sugiura, S. Inutsuka, J. Comput. Phys. 308 (2016) 171; tests/stability/tensile_instability.cpp.
+void warn_of_interpolation(const sph::Settings& sph, int dimension, std::vector<std::string>& found) {
+    constexpr std::array names{"linear", "cubic", "quintic"};
+    const auto name_of = [&](sph::Interpolation kind) { return names[static_cast<std::size_t>(kind)]; };
+    if (sph.formulation != sph::Formulation::godunov) return;
+    const auto warn = [&](std::string_view key, std::string_view state, sph::Interpolation used,
+                          sph::Interpolation stable) {
+        found.push_back(fmt::format("sph.{} = \"{}\": {} matter clumps in {}D; \"{}\" does not", key,
+                                    name_of(used), state, dimension, name_of(stable)));
+    };
+    const bool clumps_compressed = dimension == 1 ? sph.compressed == sph::Interpolation::quintic
+                                                  : sph.compressed != sph::Interpolation::linear;
+    const bool clumps_stretched = dimension == 1 ? sph.stretched != sph::Interpolation::quintic
+                                                 : sph.stretched == sph::Interpolation::linear;
+    if (clumps_compressed)
+        warn("compressed", "compressed", sph.compressed, sph::stable_compressed(dimension));
+    if (clumps_stretched) warn("stretched", "stretched", sph.stretched, sph::stable_stretched(dimension));
+}
+
+/// Where the wall lies for waves on lattices: tools/chart time_step, tests/stability/time_step.cpp.
+void warn_of_time_step(const sph::Settings& sph, std::vector<std::string>& found) {
+    const double most = sph.formulation == sph::Formulation::godunov ? 1 / sph.eta : 0.5;
+    if (sph.courant <= most) return;
+    found.push_back(fmt::format("sph.courant = {}: sound waves have been seen to blow up above {:.2g}",
+                                sph.courant, most));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const SceneSetup& setup) {
@@ -63,6 +112,9 @@ std::vector<std::string> warnings(const SceneSetup& setup) {
     const sph::Settings& sph = simulation.sph;
     for (std::size_t b = 0; b < simulation.walls.size(); ++b)
         if (simulation.walls[b]) warn_of_thin_wall(setup.bodies[b], sph, simulation.box.dimension, found);
+    warn_of_pairing(sph, simulation.box.dimension, found);
+    warn_of_interpolation(sph, simulation.box.dimension, found);
+    warn_of_time_step(sph, found);
     if (simulation.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5) {
         const auto [eta, cutoff] = sph::gaussian_defaults(3, false);
         found.push_back(fmt::format(

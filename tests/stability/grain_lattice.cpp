@@ -38,8 +38,8 @@ Eigen::Matrix3d cross(const Eigen::Vector3d& n) {
     return m;
 }
 
-/// Greatest omega^2 m/k of the waves that the periodic box bears: springs along each contact and across it, arms of a radius,
-/// moment of inertia 2/5 m R^2. Across, a spring counts `across` times k_t.
+/// Greatest omega^2 m/k of the waves that the periodic box bears: springs along each contact and across it,
+/// arms of a radius, moment of inertia 2/5 m R^2. Across, a spring counts `across` times k_t.
 double greatest_omega_squared(double across) {
     double greatest = 0;
     const double edge = std::sqrt(8.0) * radius;
@@ -47,16 +47,20 @@ double greatest_omega_squared(double across) {
         for (int q = 0; q < cells; ++q)
             for (int r = 0; r < cells; ++r) {
                 const Eigen::Vector3d k = 2 * std::numbers::pi / (cells * edge) * Eigen::Vector3d(p, q, r);
-                Eigen::Matrix<std::complex<double>, 6, 6> matrix = Eigen::Matrix<std::complex<double>, 6, 6>::Zero();
+                Eigen::Matrix<std::complex<double>, 6, 6> matrix =
+                    Eigen::Matrix<std::complex<double>, 6, 6>::Zero();
                 for (const Eigen::Vector3d& n : bonds()) {
-                    const std::complex<double> phase = std::exp(std::complex<double>(0, 2 * radius * k.dot(n)));
+                    const std::complex<double> phase =
+                        std::exp(std::complex<double>(0, 2 * radius * k.dot(n)));
                     Eigen::Matrix<std::complex<double>, 3, 6> strain;
-                    // motion of the one contact point against the other; rotations by R theta / sqrt(2/5), for unit mass
+                    // motion of the one contact point against the other; rotations by R theta / sqrt(2/5),
+                    // for unit mass
                     strain << Eigen::Matrix3d::Identity() * (1.0 - phase),
                         -cross(n) / std::sqrt(0.4) * (1.0 + phase);
                     const Eigen::Matrix3d along = n * n.transpose();
                     const Eigen::Matrix3d springs =
-                        stiffness * (along + across * tangential_share * (Eigen::Matrix3d::Identity() - along));
+                        stiffness *
+                        (along + across * tangential_share * (Eigen::Matrix3d::Identity() - along));
                     matrix += strain.adjoint() * springs * strain;
                 }
                 const Eigen::SelfAdjointEigenSolver<decltype(matrix)> solver(matrix, Eigen::EigenvaluesOnly);
@@ -75,10 +79,13 @@ double growth(const Communicator& comm, double time_step) {
         for (int b = 0; b < cells; ++b)
             for (int c = 0; c < cells; ++c)
                 for (int site = 0; site < 4; ++site) {
-                    const double x = a + (site == 1 || site == 2 ? 0.5 : 0), y = b + (site == 1 || site == 3 ? 0.5 : 0),
+                    const double x = a + (site == 1 || site == 2 ? 0.5 : 0),
+                                 y = b + (site == 1 || site == 3 ? 0.5 : 0),
                                  z = c + (site == 2 || site == 3 ? 0.5 : 0);
                     const std::uint64_t id = grains.size();
-                    const auto random = [&](std::uint32_t k) { return speed * (2 * noise.uniform(id, k) - 1); };
+                    const auto random = [&](std::uint32_t k) {
+                        return speed * (2 * noise.uniform(id, k) - 1);
+                    };
                     grains.push_back({{edge * x, edge * y, edge * z},
                                       {random(0), random(1), random(2)},
                                       {random(3), random(4), random(5)},
@@ -101,10 +108,11 @@ double growth(const Communicator& comm, double time_step) {
     return std::sqrt(energy() / before);
 }
 
-/// Positions take the leapfrog, tangential springs advance by velocities predicted to the end of the step: with z the factor
-/// of a step, (z - 1)^2 m + z k_n dt^2 + (3z - 1)/2 k_t dt^2 = 0. At the wall z = -1 this is 4 m = (k_n + 2 k_t) dt^2: 2/omega of
-/// the lattice whose tangential springs are twice as stiff, and what packed_lattice_limit() gives. With springs that advance
-/// exactly it would lie at 0.592 sqrt(m/k). Beyond it grains gather speed however slow they were.
+/// Positions take the leapfrog, tangential springs advance by velocities predicted to the end of the step:
+/// with z the factor of a step, (z - 1)^2 m + z k_n dt^2 + (3z - 1)/2 k_t dt^2 = 0. At the wall z = -1 this
+/// is 4 m = (k_n + 2 k_t) dt^2: 2/omega of the lattice whose tangential springs are twice as stiff, and what
+/// packed_lattice_limit() gives. With springs that advance exactly it would lie at 0.592 sqrt(m/k). Beyond it
+/// grains gather speed however slow they were.
 TEST(PackedGrains, TheWallOfTheTimeStepIsThatOfTheLatticeWithRotation) {
     EXPECT_NEAR(2 / std::sqrt(greatest_omega_squared(1)), 0.592, 0.002);
     const double wall = 2 / std::sqrt(greatest_omega_squared(2));
@@ -119,8 +127,8 @@ TEST(PackedGrains, TheWallOfTheTimeStepIsThatOfTheLatticeWithRotation) {
         else
             EXPECT_GT(found[c], 1e3) << shares[c];
         if (is_root())
-            print({"time step of grains", "face-centred lattice", "dt sqrt(k/m)", shares[c] * wall, wall, "growth", found[c],
-                   found[c] < 4});
+            print({"time step of grains", "face-centred lattice", "dt sqrt(k/m)", shares[c] * wall, wall,
+                   "growth", found[c], found[c] < 4});
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include "tests/support/lattice_simulation.hpp"
 #include "tests/support/shared_cases.hpp"
+#include "tests/support/stability_row.hpp"
 
 /// The tensile instability: stretched (or, for some interpolations, compressed) lattices that clump.
 /// K. Sugiura, S. Inutsuka, J. Comput. Phys. 308 (2016) 171.
@@ -192,9 +193,10 @@ TEST_P(TensileInstability, TheAutomaticChoiceIsStableForBothSignsOfPressure) {
         else
             EXPECT_LT(closest[c], 0.5) << what << ", P = " << lattice.pressure;
         if (is_root())
-            fmt::print("| {} | {:+.1f} | {} | {} | {:.0f} | {:.2f} |\n", dimension, lattice.pressure, what,
-                       name_of(lattice.pressure > 0 ? lattice.compressed : lattice.stretched),
-                       crossings * lattice.size[0], closest[c]);
+            print({"tensile instability",
+                   fmt::format("{}D, {}, {}", dimension,
+                               name_of(lattice.pressure > 0 ? lattice.compressed : lattice.stretched), what),
+                   "P/(rho c2)", lattice.pressure, 0, "closest pair", closest[c], closest[c] > 0.8});
     }
 }
 

@@ -63,8 +63,8 @@ double growth(const Communicator& comm, LatticeCase lattice, double share) {
     return greatest / amplitude;
 }
 
-/// Lattices of standard and Godunov SPH without dissipation, in 1D and 2D, compressed or stretched as far as their
-/// formulation bears. Theory: omega dt = 2 for the leapfrog; at 0.95 of it the amplitude stays within
+/// Lattices of standard and Godunov SPH without dissipation, in 1D and 2D, compressed or stretched as far as
+/// their formulation bears. Theory: omega dt = 2 for the leapfrog; at 0.95 of it the amplitude stays within
 /// 1/sqrt(1 - 0.95^2) = 3.2 of the first, at 1.05 it grows 1.89 times a step.
 TEST(TimeStep, TheWallOfTheLeapfrogStandsWhereTheDispersionRelationPutsIt) {
     LatticeCase standard{.formulation = sph::Formulation::standard,
@@ -75,11 +75,13 @@ TEST(TimeStep, TheWallOfTheLeapfrogStandsWhereTheDispersionRelationPutsIt) {
     godunov.formulation = sph::Formulation::godunov;
     plane.dimension = 2;
     plane.size = {length, 5, 0};
-    const std::vector<WaveCase> cases{{"standard, 1D", standard}, {"Godunov, 1D", godunov}, {"standard, 2D", plane}};
+    const std::vector<WaveCase> cases{
+        {"standard, 1D", standard}, {"Godunov, 1D", godunov}, {"standard, 2D", plane}};
     const std::vector<double> shares{0.5, 0.8, 0.95, 1.05, 1.2};
-    const auto found = on_shared_ranks(cases.size() * shares.size(), [&](const Communicator& comm, std::size_t c) {
-        return growth(comm, cases[c / shares.size()].lattice, shares[c % shares.size()]);
-    });
+    const auto found =
+        on_shared_ranks(cases.size() * shares.size(), [&](const Communicator& comm, std::size_t c) {
+            return growth(comm, cases[c / shares.size()].lattice, shares[c % shares.size()]);
+        });
     for (std::size_t c = 0; c < found.size(); ++c) {
         const auto& [name, lattice] = cases[c / shares.size()];
         const double share = shares[c % shares.size()];

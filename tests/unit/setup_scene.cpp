@@ -91,6 +91,31 @@ TEST_F(SceneFiles, ImpactorFollowsTheTargetWithEqualMasses) {
     EXPECT_EQ(other.bodies[1].spacing, other.bodies[0].spacing);
 }
 
+/// Each side of what tests/stability finds: 55 partners, signs of the pressure, C = 0.5 and 1/eta.
+TEST_F(SceneFiles, ChoicesThatFailAreWarnedOf) {
+    const std::string body =
+        "[[body]]\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n[sph]\n";
+    const auto warned = [&](const std::string& sph) { return warnings(read(body + sph)); };
+    const auto expect = [&](const std::string& sph, const std::string& part) {
+        const std::vector<std::string> found = warned(sph);
+        ASSERT_EQ(found.size(), 1u) << sph;
+        EXPECT_NE(found[0].find(part), std::string::npos) << found[0];
+    };
+    const std::string spline = "formulation = \"standard\"\nkernel = \"cubic_spline\"\n";
+    EXPECT_TRUE(warned(spline + "eta = 1.17\n").empty());                  // 53.7 partners
+    expect(spline + "eta = 1.19\n", "with 56 partners (sph.eta = 1.19)");  // 4/3 pi (2 eta)^3
+    EXPECT_TRUE(warned("formulation = \"standard\"\nkernel = \"wendland_c2\"\neta = 1.45\n").empty());
+    EXPECT_TRUE(warned("compressed = \"linear\"\nstretched = \"quintic\"\n").empty());
+    expect("compressed = \"cubic\"\n",
+           "sph.compressed = \"cubic\": compressed matter clumps in 3D; \"linear\" does not");
+    expect("stretched = \"linear\"\n",
+           "sph.stretched = \"linear\": stretched matter clumps in 3D; \"cubic\" does not");
+    EXPECT_TRUE(warned("formulation = \"standard\"\ncourant = 0.5\n").empty());
+    expect("formulation = \"standard\"\ncourant = 0.51\n", "sph.courant = 0.51");
+    EXPECT_TRUE(warned("eta = 0.8\ncourant = 1.25\n").empty());
+    expect("eta = 0.8\ncourant = 1.26\n", "blow up above 1.2");
+}
+
 TEST_F(SceneFiles, SpinsAndTheirWarning) {
     const std::string body = "[[body]]\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n";
     const SceneSetup slow = read(body + "spin_period = \"6 h\"\nspin_axis = [0, 3, 4]\n"),
