@@ -75,22 +75,26 @@ void warn_of_pairing(const sph::Settings& sph, int dimension, std::vector<std::s
 }
 
 /// K. Sugiura, S. Inutsuka, J. Comput. Phys. 308 (2016) 171; tests/stability/tensile_instability.cpp.
-void warn_of_interpolation(const sph::Settings& sph, int dimension, std::vector<std::string>& found) {
+void warn_of_interpolation(const Setup& setup, std::vector<std::string>& found) {
     constexpr std::array names{"linear", "cubic", "quintic"};
-    const auto name_of = [&](sph::Interpolation kind) { return names[static_cast<std::size_t>(kind)]; };
+    const sph::Settings& sph = setup.sph;
+    const int dimension = setup.box.dimension;
     if (sph.formulation != sph::Formulation::godunov) return;
-    const auto warn = [&](std::string_view key, std::string_view state, sph::Interpolation used,
-                          sph::Interpolation stable) {
-        found.push_back(fmt::format("sph.{} = \"{}\": {} matter clumps in {}D; \"{}\" does not", key,
-                                    name_of(used), state, dimension, name_of(stable)));
+    const auto warn = [&](std::string_view state, sph::Interpolation used) {
+        found.push_back(
+            fmt::format("sph.interpolation = \"{}\": {} matter clumps in {}D; \"automatic\" does not",
+                        names[static_cast<std::size_t>(used)], state, dimension));
     };
-    const bool clumps_compressed = dimension == 1 ? sph.compressed == sph::Interpolation::quintic
-                                                  : sph.compressed != sph::Interpolation::linear;
-    const bool clumps_stretched = dimension == 1 ? sph.stretched != sph::Interpolation::quintic
-                                                 : sph.stretched == sph::Interpolation::linear;
-    if (clumps_compressed)
-        warn("compressed", "compressed", sph.compressed, sph::stable_compressed(dimension));
-    if (clumps_stretched) warn("stretched", "stretched", sph.stretched, sph::stable_stretched(dimension));
+    const bool may_stretch =
+        std::any_of(setup.materials.begin(), setup.materials.end(), [](const Material& material) {
+            return !std::holds_alternative<IdealGas>(material.eos) && material.least_pressure < 0;
+        });
+    if (dimension == 1 ? sph.compressed == sph::Interpolation::quintic
+                       : sph.compressed != sph::Interpolation::linear)
+        warn("compressed", sph.compressed);
+    if (may_stretch && (dimension == 1 ? sph.stretched != sph::Interpolation::quintic
+                                       : sph.stretched == sph::Interpolation::linear))
+        warn("stretched", sph.stretched);
 }
 
 /// Where the wall lies for waves on lattices: tools/chart time_step, tests/stability/time_step.cpp.
@@ -113,7 +117,7 @@ std::vector<std::string> warnings(const SceneSetup& setup) {
     for (std::size_t b = 0; b < simulation.walls.size(); ++b)
         if (simulation.walls[b]) warn_of_thin_wall(setup.bodies[b], sph, simulation.box.dimension, found);
     warn_of_pairing(sph, simulation.box.dimension, found);
-    warn_of_interpolation(sph, simulation.box.dimension, found);
+    warn_of_interpolation(simulation, found);
     warn_of_time_step(sph, found);
     if (simulation.box.dimension == 3 && sph.formulation == sph::Formulation::godunov && sph.cutoff < 2.5) {
         const auto [eta, cutoff] = sph::gaussian_defaults(3, false);

@@ -105,11 +105,9 @@ TEST_F(SceneFiles, ChoicesThatFailAreWarnedOf) {
     EXPECT_TRUE(warned(spline + "eta = 1.17\n").empty());                  // 53.7 partners
     expect(spline + "eta = 1.19\n", "with 56 partners (sph.eta = 1.19)");  // 4/3 pi (2 eta)^3
     EXPECT_TRUE(warned("formulation = \"standard\"\nkernel = \"wendland_c2\"\neta = 1.45\n").empty());
-    EXPECT_TRUE(warned("compressed = \"linear\"\nstretched = \"quintic\"\n").empty());
-    expect("compressed = \"cubic\"\n",
-           "sph.compressed = \"cubic\": compressed matter clumps in 3D; \"linear\" does not");
-    expect("stretched = \"linear\"\n",
-           "sph.stretched = \"linear\": stretched matter clumps in 3D; \"cubic\" does not");
+    EXPECT_TRUE(warned("interpolation = \"automatic\"\n").empty());
+    expect("interpolation = \"cubic\"\n", "sph.interpolation = \"cubic\": compressed matter clumps in 3D");
+    expect("interpolation = \"linear\"\n", "sph.interpolation = \"linear\": stretched matter clumps in 3D");
     EXPECT_TRUE(warned("formulation = \"standard\"\ncourant = 0.5\n").empty());
     expect("formulation = \"standard\"\ncourant = 0.51\n", "sph.courant = 0.51");
     EXPECT_TRUE(warned("eta = 0.8\ncourant = 1.25\n").empty());
