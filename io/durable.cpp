@@ -129,4 +129,23 @@ std::uint64_t FileReader::size() const {
     return static_cast<std::uint64_t>(info.st_size);
 }
 
+FileWriter::FileWriter(const std::filesystem::path& file)
+    : file_(file), descriptor_(::open(file.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) fail(file, "cannot be opened");
+}
+
+FileWriter::~FileWriter() { ::close(descriptor_); }
+
+void FileWriter::write(std::uint64_t offset, std::span<const std::byte> bytes) const {
+    constexpr std::size_t largest = std::size_t{1} << 30;  // one write() moves at most 2 GiB
+    while (!bytes.empty()) {
+        const ssize_t count =
+            ::pwrite(descriptor_, bytes.data(), std::min(bytes.size(), largest), static_cast<off_t>(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) fail(file_, "cannot be written", count < 0 ? errno : ENOSPC);
+        offset += static_cast<std::uint64_t>(count);
+        bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+}
+
 }  // namespace talus

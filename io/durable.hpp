@@ -44,4 +44,18 @@ class FileReader {
     int descriptor_;
 };
 
+/// A file that is there, opened for writing at given offsets.
+class FileWriter {
+  public:
+    explicit FileWriter(const std::filesystem::path& file);
+    ~FileWriter();
+    FileWriter(const FileWriter&) = delete;
+    FileWriter& operator=(const FileWriter&) = delete;
+    void write(std::uint64_t offset, std::span<const std::byte> bytes) const;
+
+  private:
+    std::filesystem::path file_;
+    int descriptor_;
+};
+
 }  // namespace talus

@@ -18,4 +18,8 @@ FileDescription describe_file(const std::filesystem::path& file_or_folder);
 /// state_hash() of the state in a checkpoint; a folder means its newest one. Checksums are verified.
 std::string hash_file(const std::filesystem::path& file_or_folder);
 
+/// Whether this rank could not close a file, on a full disk for example. HDF5 would try again when MPI ends,
+/// and crash.
+bool files_are_stuck();
+
 }  // namespace talus

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "io/file_info.hpp"
+
 namespace talus::hdf5 {
 namespace {
 
@@ -91,13 +93,25 @@ std::string read_any_text(hid_t found, hid_t space, const Read& read, const std:
 
 }  // namespace
 
+namespace {
+bool stuck = false;
+}
+
 Handle::Handle(hid_t id, herr_t (*closer)(hid_t), std::string_view what) : id_(id), close_(closer) {
     if (id < 0) throw std::runtime_error(fmt::format("cannot {} ({})", what, reason()));
 }
 
 void Handle::close(std::string_view what) {
     const hid_t id = std::exchange(id_, -1);
-    if (id >= 0) check(close_(id), what);
+    if (id < 0) return;
+    const herr_t status = close_(id);
+    stuck = stuck || status < 0;
+    check(status, what);
+}
+
+void Handle::reset() {
+    const hid_t id = std::exchange(id_, -1);
+    if (id >= 0 && close_(id) < 0) stuck = true;
 }
 
 void check(herr_t status, std::string_view what) {
@@ -280,3 +294,7 @@ Extent extent_of(hid_t dataset) {
 }
 
 }  // namespace talus::hdf5
+
+namespace talus {
+bool files_are_stuck() { return hdf5::stuck; }
+}  // namespace talus

@@ -32,10 +32,7 @@ class Handle {
     void close(std::string_view what);
 
   private:
-    void reset() {
-        if (id_ >= 0) close_(id_);
-        id_ = -1;
-    }
+    void reset();
     hid_t id_;
     herr_t (*close_)(hid_t);
 };

@@ -1,7 +1,6 @@
 #include "io/particle_file.hpp"
 
 #include <fmt/format.h>
-#include <mpi.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -14,7 +13,6 @@
 namespace talus {
 namespace {
 
-using hdf5::check;
 using hdf5::Handle;
 
 struct Written {
@@ -49,38 +47,15 @@ void create_layout(const ParticleFilePlan& plan, const std::filesystem::path& te
     reserve_space(temporary);
 }
 
-Handle open_in_parallel(const Communicator& comm, const std::filesystem::path& file) {
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
-    check(H5Pset_fapl_mpio(access, comm.handle(), MPI_INFO_NULL), "choose parallel access");
-    check(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG), "set the close degree");
-    return Handle(H5Fopen(file.c_str(), H5F_ACC_RDWR, access), H5Fclose, "open for parallel writing");
-}
-
-/// Writes rows [range.begin, range.end) of `data` collectively; ranks with nothing to write take part.
-void write_slab(hid_t dataset, const DatasetPlan& plan, RowRange range, const std::byte* data) {
-    const int dimensions = plan.components > 1 ? 2 : 1;
-    const hsize_t start[2] = {range.begin, 0};
-    const hsize_t count[2] = {range.count(), plan.components};
-    const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose, "make a property list");
-    check(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE), "choose collective writing");
-    const Handle in_file(H5Dget_space(dataset), H5Sclose, "select rows");
-    const Handle in_memory(H5Screate_simple(dimensions, count, nullptr), H5Sclose, "select rows");
-    if (range.count() == 0) {
-        check(H5Sselect_none(in_file), "select rows");
-        check(H5Sselect_none(in_memory), "select rows");
-    } else {
-        check(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, nullptr, count, nullptr), "select rows");
-    }
-    check(H5Dwrite(dataset, hdf5::native_type(plan.type), in_memory, in_file, transfer, data), "write");
-}
-
-void write_dataset(const Communicator& comm, hid_t file, const DatasetPlan& plan, Written& written) {
+/// Every rank writes its rows where HDF5 has laid out the dataset, by the system's own calls: MPI-IO can
+/// report success on a full disk, and leaves a locked semaphore behind where a rank dies
+/// (docs/decisions/026-writing-files.md).
+void write_dataset(const Communicator& comm, const FileWriter& file, const DatasetPlan& plan,
+                   Written& written) {
     if (plan.total == 0) {
         written.checksum = combined_hash({});
         return;
     }
-    std::optional<Handle> dataset;
-    agree_on(comm, [&] { dataset.emplace(hdf5::open_dataset(file, plan.path)); });
     const std::uint64_t slabs = comm.all_max(slabs_in(plan.rows));
     for (std::uint64_t k = 0; k < slabs; ++k) {
         const RowRange range = slab_of(plan.rows, k);
@@ -88,15 +63,15 @@ void write_dataset(const Communicator& comm, hid_t file, const DatasetPlan& plan
         agree_on(comm, [&] {
             if (bytes.size() != range.count() * plan.row_bytes())
                 throw std::logic_error("wrong number of rows");
+            file.write(written.offset + range.begin * plan.row_bytes(), bytes);
         });
-        agree_on(comm, [&] { write_slab(*dataset, plan, range, bytes.data()); });
         const std::vector<std::uint64_t> hashes = block_hashes(bytes, plan.row_bytes());
         written.hashes.insert(written.hashes.end(), hashes.begin(), hashes.end());
     }
     written.checksum = combined_hash(comm.all_gather(std::span<const std::uint64_t>(written.hashes)));
 }
 
-/// Reads back what this rank wrote. Needed: MPI-IO can report success on a full disk.
+/// Reads back what this rank wrote: what a disk says of a write is not enough.
 void verify(const std::filesystem::path& temporary, const ParticleFilePlan& plan,
             const std::vector<Written>& written) {
     const FileReader reader(temporary);
@@ -121,11 +96,14 @@ void write_temporary(const Communicator& comm, const ParticleFilePlan& plan,
     agree_on_root(comm, [&] { create_layout(plan, temporary, written); });
     for (Written& one : written) one.offset = comm.all_max(one.offset);
 
-    std::optional<Handle> file;
-    agree_on(comm, [&] { file.emplace(open_in_parallel(comm, temporary)); });
+    std::optional<FileWriter> file;
+    agree_on(comm, [&] { file.emplace(temporary); });
     for (std::size_t k = 0; k < plan.datasets.size(); ++k)
         write_dataset(comm, *file, plan.datasets[k], written[k]);
-    agree_on(comm, [&] { file->close("close"); });
+    agree_on(comm, [&] {
+        file.reset();
+        sync_file(temporary);
+    });
 
     agree_on_root(comm, [&] {
         Handle serial = hdf5::open_file(temporary, true);

@@ -134,11 +134,8 @@ int dispatch(const Communicator& comm, const CommandLine& line) {
     return description.intact ? exit_done : exit_input_output;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-    const Environment environment(argc, argv);
-    const Communicator comm = world();
+/// What the command line asks for, and its exit code.
+int run(const Communicator& comm, int argc, char** argv) {
     CommandLine line;
     try {
         check_command(line.app, argc, argv);
@@ -163,4 +160,14 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "talus: rank {}: {}\n", comm.rank(), error.what());
     }
     Environment::abort(exit_run_failed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const Environment environment(argc, argv);
+    const Communicator comm = world();
+    const int code = run(comm, argc, argv);
+    if (files_are_stuck()) Environment::leave(code);
+    return code;
 }
