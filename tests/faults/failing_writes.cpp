@@ -1,6 +1,7 @@
-// Loaded before the C library (LD_PRELOAD): the k-th write to a file whose path holds FAULT_PATH fails, or ends the process as
-// a power cut would. Counted are writes, syncs, renames and changes of length. FAULT_KIND: "full" (no space is left, from
-// then on), "kill" (SIGKILL) or "count" (nothing; the number goes to FAULT_COUNT.<pid>).
+// Loaded before the C library (LD_PRELOAD): the k-th write to a file whose path holds FAULT_PATH fails, or
+// ends the process as a power cut would. Counted are writes, syncs, renames and changes of length.
+// FAULT_KIND: "full" (no space is left, from then on), "kill" (SIGKILL) or "count" (nothing; the number goes
+// to FAULT_COUNT.<pid>).
 #include <dlfcn.h>
 #include <sys/uio.h>
 #include <unistd.h>
