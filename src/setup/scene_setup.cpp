@@ -129,6 +129,22 @@ void refuse_outside(const Section& table, const Body& body, const Box& box) {
     }
 }
 
+/// Places are gone through one by one.
+void refuse_too_many_places(const std::vector<Section>& tables, const SceneSetup& setup) {
+    constexpr double most = 1e10;
+    const int dimension = setup.simulation.box.dimension;
+    for (std::size_t b = 0; b < tables.size(); ++b) {
+        const BoxShape around = bounds(setup.bodies[b].shape, dimension);
+        double places = 1;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+            places *= (around.upper[a] - around.lower[a]) / setup.bodies[b].spacing;
+        if (!(places < most))
+            tables[b].error(
+                "", fmt::format("has {:.3g} places for particles {:.3g} m apart (allowed: below {:.0e})",
+                                places, setup.bodies[b].spacing, most));
+    }
+}
+
 void refuse_empty_bodies(const std::vector<Section>& tables, const SceneSetup& setup) {
     for (std::size_t b = 0; b < setup.bodies.size(); ++b)
         if (setup.census[b].count == 0)
@@ -193,6 +209,8 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     auto& walls = setup.simulation.walls;
     if (std::none_of(walls.begin(), walls.end(), [](const auto& wall) { return wall.has_value(); }))
         walls.clear();
+    refuse_too_many_places(tables, setup);
+    if (scene.faulty()) return;
     setup.census = take_census(setup.bodies, box.dimension, setup.seed);
     refuse_empty_bodies(tables, setup);
     if (scene.faulty()) return;
