@@ -124,7 +124,7 @@ void read_soil_bodies(const Communicator& comm, const Scene& scene, SoilScene& s
         SoilBody body;
         body.name = table.text("name", table.path());
         refuse_same_name(table, soil.bodies, body.name);
-        soil.simulation.materials.push_back(read_soil_material(root, table, soil.simulation.saturated));
+        soil.simulation.materials.push_back(read_soil_material(root, table, soil.simulation));
         body.shape = read_shape(table, soil.simulation.materials.back().density, context);
         body.velocity = origin_default(table, "velocity", "m/s", context.dimension);
         soil.bodies.push_back(body);
@@ -152,7 +152,7 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     setup.hourglass = table.number("hourglass", "1", setup.dimension == 1 ? 0 : 0.05, {0, 0.5});
     setup.gravity = origin_default(table, "gravity", "m/s2", setup.dimension);
     setup.gravity_factor = read_time_factor(table, "gravity_change");
-    setup.strength_factor = read_time_factor(table, "strength_change");
+    setup.strength_factor = read_strength_factor(table, "strength_change");
     soil.smoothing = table.number("smoothing", "1", soil::default_smoothing, {0.4, 1});
     soil.jitter = table.number("jitter", "1", 0.0, {0, 0.25});
     setup.saturated = table.flag("saturated", false);
