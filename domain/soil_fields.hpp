@@ -56,6 +56,13 @@ inline constexpr Field<double> middle_velocity{
     "middle_velocity", "m s-1", vector, work, halo, "of nodes: in the middle of the step"};
 inline constexpr Field<double> velocity_slope{
     "velocity_slope", "s-1", tensor, work, halo, "of elements: gradient of the velocity that they fit"};
+inline constexpr Field<double> nominal_stress{
+    "nominal_stress",
+    "Pa",
+    tensor,
+    work,
+    halo,
+    "of elements: stress half a step ahead on surfaces as they are now, row by row"};
 inline constexpr Field<double> fit_weight{"fit_weight",
                                           "m-3",
                                           scalar,

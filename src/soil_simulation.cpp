@@ -155,13 +155,13 @@ void SoilSimulation::step_moving(const soil::StepSettings& settings) {
                [&](Cells which) {
                    soil::predict_elements(particles_, table, which, settings, stencils_.to_elements);
                });
-    overlapped(phases_, Phase::forces, halo, particles_,
-               {&soil_field::velocity, &soil_field::stress, &soil_field::velocity_slope, &soil_field::volume,
-                &soil_field::fit_weight, &soil_field::fit_centre, &soil_field::fit_inverse},
-               [&](Cells which) {
-                   soil::accelerate_nodes(particles_, table, which, settings, stencils_.to_nodes,
-                                          moving_memory_);
-               });
+    overlapped(
+        phases_, Phase::forces, halo, particles_,
+        {&soil_field::velocity, &soil_field::nominal_stress, &soil_field::velocity_slope, &soil_field::volume,
+         &soil_field::fit_weight, &soil_field::fit_centre, &soil_field::fit_inverse},
+        [&](Cells which) {
+            soil::accelerate_nodes(particles_, table, which, settings, stencils_.to_nodes, moving_memory_);
+        });
     phases_.enter(Phase::motion);
     soil::apply_loads(particles_, boundary_nodes_, setup_.conditions, time_ + 0.5 * time_step_, settings);
     ++step_;

@@ -10,9 +10,7 @@ Eigen::Matrix3d matrix_of(const Tensor& t) {
     return Eigen::Matrix3d{{t[0], t[3], t[4]}, {t[3], t[1], t[5]}, {t[4], t[5], t[2]}};
 }
 
-Tensor tensor_of(const Eigen::Matrix3d& m) {
-    return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)};
-}
+Tensor tensor_of(const Eigen::Matrix3d& m) { return {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)}; }
 
 /// g(m) of a symmetric matrix.
 template <class Function>
@@ -50,8 +48,8 @@ Tensor hencky_stress(const Elasticity& elasticity, const Tensor& stress, const E
     const auto stretch = [](double e) { return std::exp(2 * e); };
     const auto strain = [](double b) { return 0.5 * std::log(b); };
     const Eigen::Matrix3d before = strain_of(elasticity, stress);
-    const bool in_plane = stress[4] == 0 && stress[5] == 0 && f(0, 2) == 0 && f(1, 2) == 0 && f(2, 0) == 0 &&
-                          f(2, 1) == 0;
+    const bool in_plane =
+        stress[4] == 0 && stress[5] == 0 && f(0, 2) == 0 && f(1, 2) == 0 && f(2, 0) == 0 && f(2, 1) == 0;
     const Eigen::Matrix3d b = in_plane ? spectral_in_plane(before, stretch) : spectral(before, stretch);
     const Eigen::Matrix3d turned = f * b * f.transpose();
     return elasticity.stress_of(

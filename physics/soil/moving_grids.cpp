@@ -14,7 +14,8 @@ namespace talus::soil {
 
 namespace {
 
-/// Second moments over h^2, in their weakest direction, below which nodes define no gradient; 0.27 in lattices.
+/// Second moments over h^2, in their weakest direction, below which nodes define no gradient; 0.27 in
+/// lattices.
 constexpr double round_enough = 0.06;
 /// sum V_e g over a spacing and a volume: 0 within lattices, 2 on faces. Surfaces begin at the first.
 constexpr double surface_begins = 0.4, surface_is_full = 0.8;
@@ -65,11 +66,11 @@ Eigen::Matrix3d deformation(const Matrix<D>& gradient, double time) {
 /// Least squares over the nodes around an element.
 template <int D>
 struct ElementFit {
-    std::vector<double> weights{};    ///< they add up to 1
-    std::vector<Vector<D>> arms{};    ///< of nodes from the centre
-    double total = 0;                 ///< of the kernel
-    Vector<D> centre;                 ///< of the nodes, from the element
-    Matrix<D> inverse;                ///< of the second moments
+    std::vector<double> weights{};  ///< they add up to 1
+    std::vector<Vector<D>> arms{};  ///< of nodes from the centre
+    double total = 0;               ///< of the kernel
+    Vector<D> centre;               ///< of the nodes, from the element
+    Matrix<D> inverse;              ///< of the second moments
     bool good = false;
 
     /// From kernels and arms from the element.
@@ -163,7 +164,8 @@ class ElementPass {
         for (std::uint32_t k = rows_.first[row]; k < rows_.first[row + 1]; ++k) {
             const double* weight = rows_.weights.data() + std::size_t{k} * (D + 1);
             const std::uint32_t j = rows_.partners[k];
-            for (int c = 0; c < StateColumns<D>::stresses; ++c) stress[c] += weight[0] * columns_.stress[c][j];
+            for (int c = 0; c < StateColumns<D>::stresses; ++c)
+                stress[c] += weight[0] * columns_.stress[c][j];
             if (D < 3) lateral += weight[0] * columns_.lateral[j];
             for (int a = 0; a < D; ++a) {
                 const double v = columns_.velocity[a][j];
@@ -187,6 +189,11 @@ class ElementPass {
         columns_.add_elastic(i, settings_.materials[particles_.data(field::body)[i]].elasticity, gradient,
                              half);
         put_tensor<D>(particles_, soil_field::velocity_slope, i, slope);
+        const Matrix<D> f = Matrix<D>::Identity() + half * slope;
+        const Matrix<D> ahead =
+            symmetric_at<D>(sph::components<sph::symmetric_count<D>>(particles_, soil_field::stress), i);
+        put_tensor<D>(particles_, soil_field::nominal_stress, i,
+                      f.determinant() * ahead * f.inverse().transpose());
     }
 
     /// An element that fits nothing flies on.
@@ -195,6 +202,7 @@ class ElementPass {
         for (std::size_t a = 0; a < D; ++a)
             columns_.velocity[a][i] += settings_.time_step * settings_.body_force[a];
         put_tensor<D>(particles_, soil_field::velocity_slope, i, Matrix<D>::Zero());
+        put_tensor<D>(particles_, soil_field::nominal_stress, i, Matrix<D>::Zero());
     }
 
     ParticleSet& particles_;
@@ -214,7 +222,7 @@ struct ElementColumns {
     explicit ElementColumns(const ParticleSet& particles)
         : position(sph::components<D>(particles, field::position)),
           velocity(sph::components<D>(particles, soil_field::velocity)),
-          stress(sph::components<sph::symmetric_count<D>>(particles, soil_field::stress)),
+          stress(sph::components<D * D>(particles, soil_field::nominal_stress)),
           slope(sph::components<D * D>(particles, soil_field::velocity_slope)),
           centre(sph::components<D>(particles, soil_field::fit_centre)),
           inverse(sph::components<sph::symmetric_count<D>>(particles, soil_field::fit_inverse)),
@@ -225,8 +233,7 @@ struct ElementColumns {
           grid(particles.data(soil_field::grid)) {}
 
     std::array<const double*, D> position, velocity;
-    std::array<const double*, sph::symmetric_count<D>> stress;
-    std::array<const double*, D * D> slope;
+    std::array<const double*, D * D> stress, slope;
     std::array<const double*, D> centre;
     std::array<const double*, sph::symmetric_count<D>> inverse;
     const double *weight, *volume, *mass, *h;
@@ -274,7 +281,7 @@ class NodePass {
             rows_.partners.push_back(e);
             rows_.weights.push_back(weight);
             rows_.weights.insert(rows_.weights.end(), arm.data(), arm.data() + D);
-            const Matrix<D> stress = symmetric_at<D>(of_.stress, e);
+            const Matrix<D> stress = tensor_at<D>(of_.stress, e);
             const Vector<D> area = of_.volume[e] * gradient;
             volume += weight * of_.volume[e];
             mean += weight * of_.volume[e] * stress;
@@ -344,8 +351,7 @@ void measure_elements_in(ParticleSet& particles, Cells which, const StencilRows&
 std::array<bool, 3> held_axes(std::uint32_t held, std::span<const BoundaryCondition> conditions) {
     std::array<bool, 3> axes{};
     for (std::size_t c = 0; c < conditions.size() && held != 0; ++c)
-        for (std::size_t a = 0; a < 3 && (held >> c & 1); ++a)
-            axes[a] = axes[a] || conditions[c].held[a];
+        for (std::size_t a = 0; a < 3 && (held >> c & 1); ++a) axes[a] = axes[a] || conditions[c].held[a];
     return axes;
 }
 
@@ -372,8 +378,8 @@ void deform_nodes_in(ParticleSet& particles, Cells which, const StepSettings& se
             const double share = weight[0] * of.volume[e] / volume;
             const Matrix<D> of_element = tensor_at<D>(of.slope, e);
             slope += share * of_element;
-            seen += share * (vector_at<D>(of.velocity, e) +
-                             of_element * Eigen::Map<const Vector<D>>(weight + 1));
+            seen +=
+                share * (vector_at<D>(of.velocity, e) + of_element * Eigen::Map<const Vector<D>>(weight + 1));
         }
         const bool alone = !(volume > 0);
         const std::array<bool, 3> held = held_axes(particles.data(soil_field::conditions)[i], conditions);
@@ -410,8 +416,7 @@ void move_elements_in(ParticleSet& particles, const StencilRows& rows, double ti
     double* volume = particles.data(soil_field::volume);
     for (const std::uint32_t i : rows.targets) {
         const Matrix<D> slope = tensor_at<D>(of.slope, i);
-        const Vector<D> way =
-            time_step * (vector_at<D>(of.velocity, i) - slope * vector_at<D>(of.centre, i));
+        const Vector<D> way = time_step * (vector_at<D>(of.velocity, i) - slope * vector_at<D>(of.centre, i));
         for (int a = 0; a < D; ++a) position[a][i] += way[a];
         volume[i] *= deformation<D>(slope, time_step).determinant();
     }
@@ -422,8 +427,8 @@ void move_elements_in(ParticleSet& particles, const StencilRows& rows, double ti
 void add_moving_fields(ParticleSet& particles) {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &soil_field::volume, &soil_field::surface, &soil_field::middle_velocity,
-             &soil_field::velocity_slope, &soil_field::fit_weight, &soil_field::fit_centre,
-             &soil_field::fit_inverse})
+             &soil_field::velocity_slope, &soil_field::nominal_stress, &soil_field::fit_weight,
+             &soil_field::fit_centre, &soil_field::fit_inverse})
         particles.add(*info);
 }
 
@@ -465,8 +470,8 @@ void centre_velocities(ParticleSet& particles, const Stencils& stencils) {
 }
 
 void measure_elements(ParticleSet& particles, Cells which, const StencilRows& rows) {
-    sph::with_dimension(
-        particles, [&](auto dimension) { measure_elements_in<dimension()>(particles, which, rows); });
+    sph::with_dimension(particles,
+                        [&](auto dimension) { measure_elements_in<dimension()>(particles, which, rows); });
 }
 
 void deform_nodes(ParticleSet& particles, Cells which, const StepSettings& settings,
@@ -478,8 +483,8 @@ void deform_nodes(ParticleSet& particles, Cells which, const StepSettings& setti
 }
 
 void move_elements(ParticleSet& particles, const StencilRows& rows, double time_step) {
-    sph::with_dimension(
-        particles, [&](auto dimension) { move_elements_in<dimension()>(particles, rows, time_step); });
+    sph::with_dimension(particles,
+                        [&](auto dimension) { move_elements_in<dimension()>(particles, rows, time_step); });
 }
 
 }  // namespace talus::soil

@@ -16,7 +16,8 @@ namespace talus::soil {
 // Each element fits its nodes linearly by moving least squares (weights w, gradients g); nodes use the same
 // weights, so that one set of them makes all operators:
 //   element  s_e = sum w s_i + dt/2 (rate of s)(sum g v_i)                             half a step ahead
-//   node     m dv/dt = -sum V_e g . (s_e - C s_i) + loads, s_i = sum V_e w s_e / sum V_e w
+//            p_e = J s_e f^-T with f = 1 + dt/2 sum g v_i, J = det f: the torque vanishes half way, too
+//   node     m dv/dt = -sum V_e g . (p_e - C p_i) + loads, p_i = sum V_e w p_e / sum V_e w
 //   element  l_e = sum g (v_i + v_i')/2, V_e -> det(1 + dt l_e) V_e
 //   node     the stress of the deformation 1 + dt sum V_e w l_e / sum V_e w (hencky_stress)
 // C projects away from the normal of a free surface, and is 1 within: forces of a stress without gradient
