@@ -63,6 +63,10 @@ inline constexpr Field<double> nominal_stress{
     work,
     halo,
     "of elements: stress half a step ahead on surfaces as they are now, row by row"};
+inline constexpr Field<double> stress_fit{
+    "stress_fit", "1",
+    profile,      work,
+    halo,         "of elements: the stress that they fit [Pa], then its gradient along each axis [Pa/m]"};
 inline constexpr Field<double> fit_weight{"fit_weight",
                                           "m-3",
                                           scalar,

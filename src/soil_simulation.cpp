@@ -47,7 +47,7 @@ void add_fields(ParticleSet& particles, const SoilSetup& setup) {
         particles.add(soil_field::viscoplastic_work);
     }
     if (has_layers(setup)) particles.add(soil_field::volume);
-    if (setup.moves) soil::add_moving_fields(particles);
+    if (setup.moves) soil::add_moving_fields(particles, setup.stress_smoothing > 0);
     if (setup.saturated) soil::add_pore_fields(particles);
     if (any_cam_clay(setup)) particles.add(soil_field::preconsolidation);
 }
@@ -158,7 +158,7 @@ void SoilSimulation::step_moving(const soil::StepSettings& settings) {
     overlapped(
         phases_, Phase::forces, halo, particles_,
         {&soil_field::velocity, &soil_field::nominal_stress, &soil_field::velocity_slope, &soil_field::volume,
-         &soil_field::fit_weight, &soil_field::fit_centre, &soil_field::fit_inverse},
+         &soil_field::fit_weight, &soil_field::fit_centre, &soil_field::fit_inverse, &soil_field::stress_fit},
         [&](Cells which) {
             soil::accelerate_nodes(particles_, table, which, settings, stencils_.to_nodes, moving_memory_);
         });

@@ -16,9 +16,12 @@ namespace {
 
 /// Second moments over h^2, in their weakest direction, below which nodes define no gradient; 0.27 in
 /// lattices.
-constexpr double round_enough = 0.06;
+constexpr double round_enough = 0.1;
 /// sum V_e g over a spacing and a volume: 0 within lattices, 2 on faces. Surfaces begin at the first.
 constexpr double surface_begins = 0.4, surface_is_full = 0.8;
+/// Elements whose mass at a node exceeds its own this many times give it their inertia: where soil has come
+/// apart few nodes have many elements, whose stiffness would be too much for the time step.
+constexpr double most_elements = 1.5;
 
 template <int D>
 using Vector = Eigen::Matrix<double, D, 1>;
@@ -53,6 +56,28 @@ template <int D>
 void put_tensor(ParticleSet& particles, const Field<double>& field, std::size_t i, const Matrix<D>& value) {
     for (int a = 0; a < D; ++a)
         for (int b = 0; b < D; ++b) particles.data(field, a * D + b)[i] = value(a, b);
+}
+
+/// Columns of a stress in StateColumns, the lateral one among them.
+template <int D>
+constexpr int stress_count = sph::symmetric_count<D> + (D < 3 ? 1 : 0);
+
+template <int D>
+std::array<double*, stress_count<D>> stress_columns_of(const StateColumns<D>& columns) {
+    std::array<double*, stress_count<D>> all{};
+    std::copy(columns.stress.begin(), columns.stress.end(), all.begin());
+    if (D < 3) all.back() = columns.lateral;
+    return all;
+}
+
+/// Linear fits of the stress, value and slopes, in elements; empty unless it is smoothed.
+template <int D>
+std::vector<double*> stress_fits(ParticleSet& particles) {
+    std::vector<double*> fits;
+    if (!particles.has(soil_field::stress_fit)) return fits;
+    for (int c = 0; c < (1 + D) * stress_count<D>; ++c)
+        fits.push_back(particles.data(soil_field::stress_fit, c));
+    return fits;
 }
 
 /// The increment of the deformation gradient that a velocity gradient makes in a time.
@@ -106,6 +131,7 @@ class ElementPass {
           rows_(rows),
           columns_(particles),
           position_(sph::components<D>(particles, field::position)),
+          stress_fits_(stress_fits<D>(particles)),
           h_(particles.data(field::smoothing_length)),
           grid_(particles.data(soil_field::grid)) {}
 
@@ -173,6 +199,7 @@ class ElementPass {
                 for (int b = 0; b < D; ++b) slope(a, b) += weight[1 + b] * v;
             }
         }
+        fit_stress(i, row);
         const Matrix<D> spin = 0.5 * (slope - slope.transpose());
         Matrix<D> mean;
         for (int a = 0; a < D; ++a)
@@ -196,6 +223,19 @@ class ElementPass {
                       f.determinant() * ahead * f.inverse().transpose());
     }
 
+    /// Values and slopes of the stress.
+    void fit_stress(std::uint32_t i, std::size_t row) {
+        if (stress_fits_.empty()) return;
+        const auto stress = stress_columns_of<D>(columns_);
+        for (double* column : stress_fits_) column[i] = 0;
+        for (std::uint32_t k = rows_.first[row]; k < rows_.first[row + 1]; ++k) {
+            const double* weight = rows_.weights.data() + std::size_t{k} * (D + 1);
+            for (std::size_t a = 0; a < D + 1; ++a)
+                for (std::size_t c = 0; c < stress.size(); ++c)
+                    stress_fits_[a * stress.size() + c][i] += weight[a] * stress[c][rows_.partners[k]];
+        }
+    }
+
     /// An element that fits nothing flies on.
     void fall(std::uint32_t i) {
         columns_.put_stress(i, {});
@@ -211,6 +251,7 @@ class ElementPass {
     StencilRows& rows_;
     const StateColumns<D> columns_;
     std::array<const double*, D> position_;
+    std::vector<double*> stress_fits_;
     const double* h_;
     const std::uint8_t* grid_;
     ElementFit<D> fit_{};
@@ -251,7 +292,9 @@ class NodePass {
           rows_(rows),
           memory_(memory),
           of_(particles),
-          velocity_(sph::components_to_write<D>(particles, soil_field::velocity)) {}
+          velocity_(sph::components_to_write<D>(particles, soil_field::velocity)),
+          stress_(stress_columns_of<D>(StateColumns<D>(particles))),
+          stress_fits_(stress_fits<D>(particles)) {}
 
     void run(Cells which) {
         Partners<D> found(of_.position, of_.h, moving_search_range);
@@ -269,7 +312,7 @@ class NodePass {
     void accelerate(std::uint32_t i, std::span<const std::uint32_t> near) {
         const sph::WendlandC2<D> kernel;
         const Vector<D> at = vector_at<D>(of_.position, i), own = vector_at<D>(of_.velocity, i);
-        double volume = 0;
+        double volume = 0, around = 0;
         Vector<D> force = Vector<D>::Zero(), outward = Vector<D>::Zero(), unseen = Vector<D>::Zero();
         Matrix<D> mean = Matrix<D>::Zero();
         for (const std::uint32_t e : near) {
@@ -284,6 +327,7 @@ class NodePass {
             const Matrix<D> stress = tensor_at<D>(of_.stress, e);
             const Vector<D> area = of_.volume[e] * gradient;
             volume += weight * of_.volume[e];
+            around += weight * of_.mass[e];
             mean += weight * of_.volume[e] * stress;
             outward += area;
             force -= stress * area;
@@ -293,13 +337,33 @@ class NodePass {
         rows_.end_row();
         memory_.volume.push_back(volume);
         if (volume > 0) force += mean / volume * without_traction(i, outward, volume);
-        const double mass = of_.mass[i];
+        if (volume > 0) smooth_stress(i, volume);
+        const double mass = std::max(of_.mass[i], around / most_elements);
         for (int a = 0; a < D; ++a) {
             particles_.data(soil_field::middle_velocity, a)[i] = own[a];
             velocity_[a][i] +=
                 settings_.time_step * (force[a] / mass + settings_.body_force[static_cast<std::size_t>(a)]) -
                 settings_.hourglass * unseen[a] / mass;
         }
+    }
+
+    /// Takes a share of what lies off the fits of the elements around away.
+    void smooth_stress(std::uint32_t i, double volume) {
+        if (stress_fits_.empty()) return;
+        std::array<double, stress_count<D>> fits{};
+        const std::size_t row = rows_.first.size() - 2;
+        for (std::uint32_t k = rows_.first[row]; k < rows_.first[row + 1]; ++k) {
+            const double* weight = rows_.weights.data() + std::size_t{k} * (D + 1);
+            const std::uint32_t e = rows_.partners[k];
+            const double share = weight[0] * of_.volume[e] / volume;
+            for (std::size_t c = 0; c < fits.size(); ++c) {
+                double fit = stress_fits_[c][e];
+                for (std::size_t a = 1; a <= D; ++a) fit += weight[a] * stress_fits_[a * fits.size() + c][e];
+                fits[c] += share * fit;
+            }
+        }
+        for (std::size_t c = 0; c < fits.size(); ++c)
+            stress_[c][i] -= settings_.stress_smoothing * (stress_[c][i] - fits[c]);
     }
 
     /// Of the area sum V_e g what is no surface: all of it within, what lies along a surface on that.
@@ -322,6 +386,8 @@ class NodePass {
     MovingMemory& memory_;
     const ElementColumns<D> of_;
     std::array<double*, D> velocity_;
+    std::array<double*, stress_count<D>> stress_;
+    std::vector<double*> stress_fits_;
 };
 
 template <int D>
@@ -424,12 +490,17 @@ void move_elements_in(ParticleSet& particles, const StencilRows& rows, double ti
 
 }  // namespace
 
-void add_moving_fields(ParticleSet& particles) {
+void add_moving_fields(ParticleSet& particles, bool smooth_stress) {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &soil_field::volume, &soil_field::surface, &soil_field::middle_velocity,
              &soil_field::velocity_slope, &soil_field::nominal_stress, &soil_field::fit_weight,
              &soil_field::fit_centre, &soil_field::fit_inverse})
         particles.add(*info);
+    if (smooth_stress)
+        sph::with_dimension(particles, [&](auto dimension) {
+            constexpr int D = dimension();
+            particles.add(soil_field::stress_fit, (1 + D) * stress_count<D>);
+        });
 }
 
 void list_targets(const ParticleSet& particles, const CellTable& table, Stencils& stencils) {

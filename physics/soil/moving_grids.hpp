@@ -32,8 +32,8 @@ struct MovingMemory {
     std::vector<double> volume;  ///< sum V_e w of nodes [m^D]
 };
 
-/// Fields that moving grids need besides.
-void add_moving_fields(ParticleSet& particles);
+/// Fields that moving grids need besides; `smooth_stress`: with StepSettings::stress_smoothing.
+void add_moving_fields(ParticleSet& particles, bool smooth_stress);
 
 /// Own nodes and elements as targets of to_nodes and to_elements, without partners yet: those of cells that
 /// need no copies first.

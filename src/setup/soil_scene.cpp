@@ -150,7 +150,11 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     setup.moves = table.choice("deformation", {"small", "large"}, "small") == "large";
     setup.courant = table.number("courant", "1", setup.moves ? 0.6 : 0.9, {0, 1, true});
     setup.damping = table.number("damping", "s-1", 0.0, not_negative);
-    setup.hourglass = table.number("hourglass", "1", setup.dimension == 1 ? 0 : 0.05, {0, 0.5});
+    setup.hourglass = table.number("hourglass", "1",
+                                   setup.dimension == 1 ? 0
+                                   : setup.moves        ? 0.2
+                                                        : 0.05,
+                                   {0, 0.5});
     setup.gravity = origin_default(table, "gravity", "m/s2", setup.dimension);
     setup.gravity_factor = read_time_factor(table, "gravity_change");
     setup.strength_factor = read_strength_factor(table, "strength_change");
@@ -167,8 +171,11 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     read_soil_bodies(comm, scene, soil);
     bool flows = false;
     for (const soil::Material& material : setup.materials) flows |= material.flows();
-    const double smoothing = setup.dimension == 1 ? 0 : soil.jitter > 0 ? 0.1 : flows ? 0.02 : 0;
-    if (!setup.moves) setup.stress_smoothing = table.number("stress_smoothing", "1", smoothing, {0, 0.5});
+    const double smoothing = setup.dimension == 1                        ? 0
+                             : soil.jitter > 0 || (setup.moves && flows) ? 0.1
+                             : flows                                     ? 0.02
+                                                                         : 0;
+    setup.stress_smoothing = table.number("stress_smoothing", "1", smoothing, {0, 0.5});
     if (setup.dimension == 1) {
         const bool bar = table.choice("across", {"confined", "free"}, "confined") == "free";
         for (soil::Material& material : setup.materials) material.elasticity.uniaxial_stress = bar;

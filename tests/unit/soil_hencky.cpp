@@ -30,8 +30,8 @@ void shear_to(double shear, int steps, const Material& material, Visit&& visit) 
 }
 
 // tau = 4 G asinh(g/2)/sqrt(4 + g^2): ln of the left stretch, whose larger value is asinh(g/2), turned by its
-// axes. It rises to 1.325 G at g = 3.02 and never changes sign. Jaumann's rate gives G sin(g): 0.26 where this
-// is 1.30 at g = 2.88, and negative beyond pi.
+// axes. It rises to 1.325 G at g = 3.02 and never changes sign. Jaumann's rate gives G sin(g): 0.26 where
+// this is 1.30 at g = 2.88, and negative beyond pi.
 TEST(SoilHencky, SimpleShearFollowsItsClosedForm) {
     const double shear_modulus = elastic.shear_modulus();
     std::array<double, 3> jaumann{};

@@ -18,11 +18,16 @@ bool is_root() { return Communicator(MPI_COMM_WORLD).is_root(); }
 
 /// An elastic block in nothing: 10 x 4 m, waves of 232 m/s.
 SoilScene block(const Communicator& comm, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> overrides{"soil.deformation=large", "soil.spacing=0.5", "soil.damping=0",
+    std::vector<std::string> overrides{"soil.deformation=large",
+                                       "soil.spacing=0.5",
+                                       "soil.damping=0",
                                        "soil.gravity=[0, 0]",
                                        "materials.clay.yield.yield_stress=1e12",
-                                       "body[0].lower=[-5,-2]", "body[0].upper=[0,2]",
-                                       "body[1].lower=[0,-2]", "body[1].upper=[5,2]", "boundary[2].lower=[5,-2]"};
+                                       "body[0].lower=[-5,-2]",
+                                       "body[0].upper=[0,2]",
+                                       "body[1].lower=[0,-2]",
+                                       "body[1].upper=[5,2]",
+                                       "boundary[2].lower=[5,-2]"};
     overrides.insert(overrides.end(), more.begin(), more.end());
     SoilScene scene = soil_scene(comm, runs / "vertical_cut", overrides);
     return scene;
@@ -72,8 +77,9 @@ TEST(SoilInMotion, ARotatingBlockKeepsItsSpinShapeAndEnergy) {
     // swings to twice that. Jaumann's rate with explicit steps would have grown by exp(w^2 dt t/2) = 1.06.
     const Communicator alone(MPI_COMM_SELF);
     const double spin = 3, centrifugal = 0.5 * 2000 * std::pow(spin * 5, 2);
-    SoilSimulation run = moving(alone, block(alone),
-                                [&](double x, double y) { return std::array{-spin * y, spin * x}; });
+    SoilSimulation run = moving(alone, block(alone), [&](double x, double y) {
+        return std::array{-spin * y, spin * x};
+    });
     run.start();
     const double before = spin_of(run.particles()), energy = run.totals().kinetic_energy;
     double greatest = 0;
@@ -96,11 +102,12 @@ TEST(SoilInMotion, CheckerboardVelocityDecays) {
     // Elements see nothing of it; of the energy 0.95^400 = 1e-9 would be left within.
     const Communicator alone(MPI_COMM_SELF);
     for (const bool filtered : {true, false}) {
-        SoilSimulation run = moving(alone, block(alone, {fmt::format("soil.hourglass={}", filtered ? 0.05 : 0.0)}),
-                                    [&](double x, double y) {
-                                        const long k = std::lround(2 * x) + std::lround(2 * y);
-                                        return std::array{k % 2 == 0 ? 1.0 : -1.0, 0.0};
-                                    });
+        SoilSimulation run =
+            moving(alone, block(alone, {fmt::format("soil.hourglass={}", filtered ? 0.05 : 0.0)}),
+                   [&](double x, double y) {
+                       const long k = std::lround(2 * x) + std::lround(2 * y);
+                       return std::array{k % 2 == 0 ? 1.0 : -1.0, 0.0};
+                   });
         run.start();
         const double before = run.totals().kinetic_energy;
         for (int k = 0; k < 200; ++k) run.step();
