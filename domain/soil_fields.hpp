@@ -42,8 +42,42 @@ inline constexpr Field<std::uint32_t> conditions{
     state,        owner, "boundary conditions of the scene that hold at the node, a bit each"};
 inline constexpr Field<double> pore_pressure{"pore_pressure", "Pa", scalar,
                                              state,           halo, "pressure of the pore water, of nodes"};
-inline constexpr Field<double> volume{"volume", "m3",  scalar,
-                                      state,    owner, "of nodes: share of the body's volume"};
+inline constexpr Field<double> volume{
+    "volume", "m3", scalar,
+    state,    halo, "of nodes: share of the body's volume at the start; of elements: now"};
+inline constexpr Field<double> surface{"surface",
+                                       "m2",
+                                       vector,
+                                       state,
+                                       owner,
+                                       "of nodes on faces: area of the body's surface times its "
+                                       "outward normal"};
+inline constexpr Field<double> middle_velocity{
+    "middle_velocity", "m s-1", vector, work, halo, "of nodes: in the middle of the step"};
+inline constexpr Field<double> velocity_slope{
+    "velocity_slope", "s-1", tensor, work, halo, "of elements: gradient of the velocity that they fit"};
+inline constexpr Field<double> nominal_stress{
+    "nominal_stress",
+    "Pa",
+    tensor,
+    work,
+    halo,
+    "of elements: stress half a step ahead on surfaces as they are now, row by row"};
+inline constexpr Field<double> stress_fit{
+    "stress_fit", "1",
+    profile,      work,
+    halo,         "of elements: the stress that they fit [Pa], then its gradient along each axis [Pa/m]"};
+inline constexpr Field<double> fit_weight{"fit_weight",
+                                          "m-3",
+                                          scalar,
+                                          work,
+                                          halo,
+                                          "of elements: sum of the kernel over nodes; "
+                                          "0 if these define no gradient"};
+inline constexpr Field<double> fit_centre{
+    "fit_centre", "m", vector, work, halo, "of elements: weighted mean of nodes, from the element"};
+inline constexpr Field<double> fit_inverse{
+    "fit_inverse", "m-2", symmetric_tensor, work, halo, "of elements: inverse second moments of nodes"};
 inline constexpr Field<double> pressure_guess{
     "pressure_guess", "Pa", scalar, work, halo, "of nodes: what the pressure's equation is applied to"};
 inline constexpr Field<double> pressure_flux{

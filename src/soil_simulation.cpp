@@ -47,6 +47,7 @@ void add_fields(ParticleSet& particles, const SoilSetup& setup) {
         particles.add(soil_field::viscoplastic_work);
     }
     if (has_layers(setup)) particles.add(soil_field::volume);
+    if (setup.moves) soil::add_moving_fields(particles, setup.stress_smoothing > 0);
     if (setup.saturated) soil::add_pore_fields(particles);
     if (any_cam_clay(setup)) particles.add(soil_field::preconsolidation);
 }
@@ -62,7 +63,7 @@ SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, Partic
     time_step_ = setup_.courant * setup_.spacing / fastest;
     double radius = 0;
     for (const double h : std::as_const(particles_).own(field::smoothing_length))
-        radius = std::max(radius, soil::search_range * h);
+        radius = std::max(radius, (setup_.moves ? soil::moving_search_range : soil::search_range) * h);
     Box box;
     box.dimension = setup_.dimension;
     grid_ = std::make_unique<CellGrid>(box, comm_.all_max(radius), 1);
@@ -74,10 +75,10 @@ SoilSimulation::SoilSimulation(const Communicator& comm, SoilSetup setup, Partic
 void SoilSimulation::arrange() {
     phases_.enter(Phase::decompose);
     decomposition_.arrange(particles_, *grid_);
-    decomposition_.halo().begin(
-        particles_, {&field::position, &field::smoothing_length, &soil_field::grid, &field::body});
-    decomposition_.halo().finish();
-    soil::build_stencils(particles_, decomposition_.table(), smooths(), stencils_);
+    if (setup_.moves)
+        soil::list_targets(particles_, decomposition_.table(), stencils_);
+    else
+        list_stencils();
     boundary_nodes_ = soil::list_boundary_nodes(particles_, stencils_, setup_.conditions, setup_.spacing);
     if (setup_.saturated) {
         free_axes_ = soil::list_free_axes(boundary_nodes_, setup_.conditions, stencils_, setup_.dimension,
@@ -86,6 +87,14 @@ void SoilSimulation::arrange() {
             std::any_of(free_axes_.begin(), free_axes_.end(), [](auto axes) { return axes != 0; });
         any_free_face_ = comm_.all_max(any ? 1.0 : 0.0) > 0;
     }
+    phases_.stop();
+}
+
+void SoilSimulation::list_stencils() {
+    decomposition_.halo().begin(
+        particles_, {&field::position, &field::smoothing_length, &soil_field::grid, &field::body});
+    decomposition_.halo().finish();
+    soil::build_stencils(particles_, decomposition_.table(), smooths(), stencils_);
     std::string message;
     if (stencils_.poor > 0)
         message = fmt::format(
@@ -93,14 +102,14 @@ void SoilSimulation::arrange() {
             "grid for a gradient; a body is thinner than two spacings there",
             step_, time_, stencils_.first_poor, stencils_.poor - 1);
     comm_.all_agree(1, message);
-    phases_.stop();
 }
 
 void SoilSimulation::start() {
     arrange();
     if (setup_.saturated) soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
-    if (setup_.dimension == 1) soil::impose_end_stress(particles_, boundary_nodes_, setup_.conditions, time_);
+    if (setup_.dimension == 1 && !setup_.moves)
+        soil::impose_end_stress(particles_, boundary_nodes_, setup_.conditions, time_);
 }
 
 void SoilSimulation::resume(double time, std::uint64_t step) {
@@ -109,8 +118,9 @@ void SoilSimulation::resume(double time, std::uint64_t step) {
     arrange();
 }
 
-void SoilSimulation::step() {
+soil::StepSettings SoilSimulation::settings_now() const {
     soil::StepSettings settings{.time_step = time_step_,
+                                .spacing = setup_.spacing,
                                 .strength_factor = setup_.strength_factor(time_),
                                 .damping = setup_.damping,
                                 .hourglass = setup_.hourglass,
@@ -118,8 +128,58 @@ void SoilSimulation::step() {
                                 .materials = setup_.materials};
     const double gravity = setup_.gravity_factor(time_ + 0.5 * time_step_);
     for (std::size_t a = 0; a < 3; ++a) settings.body_force[a] = gravity * setup_.gravity[a];
+    return settings;
+}
+
+void SoilSimulation::step() {
+    const soil::StepSettings settings = settings_now();
     phases_.enter(Phase::material);
     const std::uint64_t too_fast = soil::apply_sources(particles_, stencils_, settings);
+    if (setup_.moves)
+        step_moving(settings);
+    else
+        step_at_rest(settings);
+    pairs_ += stencils_.partner_count();
+    refuse_what_broke(too_fast);
+    if (setup_.moves) arrange();
+    phases_.stop();
+}
+
+void SoilSimulation::step_moving(const soil::StepSettings& settings) {
+    const CellTable& table = decomposition_.table();
+    Halo& halo = decomposition_.halo();
+    moving_memory_.volume.clear();
+    overlapped(phases_, Phase::gradients, halo, particles_,
+               {&field::position, &field::mass, &field::smoothing_length, &soil_field::grid,
+                &soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress},
+               [&](Cells which) {
+                   soil::predict_elements(particles_, table, which, settings, stencils_.to_elements);
+               });
+    overlapped(
+        phases_, Phase::forces, halo, particles_,
+        {&soil_field::velocity, &soil_field::nominal_stress, &soil_field::velocity_slope, &soil_field::volume,
+         &soil_field::fit_weight, &soil_field::fit_centre, &soil_field::fit_inverse, &soil_field::stress_fit},
+        [&](Cells which) {
+            soil::accelerate_nodes(particles_, table, which, settings, stencils_.to_nodes, moving_memory_);
+        });
+    phases_.enter(Phase::motion);
+    soil::apply_loads(particles_, boundary_nodes_, setup_.conditions, time_ + 0.5 * time_step_, settings);
+    ++step_;
+    time_ = static_cast<double>(step_) * time_step_;
+    soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
+    soil::centre_velocities(particles_, stencils_);
+    overlapped(phases_, Phase::gradients, halo, particles_, {&soil_field::middle_velocity},
+               [&](Cells which) { soil::measure_elements(particles_, which, stencils_.to_elements); });
+    overlapped(phases_, Phase::material, halo, particles_,
+               {&soil_field::velocity, &soil_field::velocity_slope}, [&](Cells which) {
+                   soil::deform_nodes(particles_, which, settings, setup_.conditions, stencils_.to_nodes,
+                                      moving_memory_);
+               });
+    phases_.enter(Phase::motion);
+    soil::move_elements(particles_, stencils_.to_elements, time_step_);
+}
+
+void SoilSimulation::step_at_rest(const soil::StepSettings& settings) {
     overlapped(phases_, Phase::gradients, decomposition_.halo(), particles_,
                {&soil_field::velocity, &soil_field::stress, &soil_field::lateral_stress}, [&](Cells which) {
                    soil::advance_elements(particles_, stencils_.to_elements, which, settings);
@@ -140,9 +200,6 @@ void SoilSimulation::step() {
     soil::advance_face_stress(particles_, stencils_, settings, memory_);
     if (setup_.dimension == 1) soil::impose_end_stress(particles_, boundary_nodes_, setup_.conditions, time_);
     soil::displace(particles_, stencils_, time_step_);
-    pairs_ += stencils_.partner_count();
-    refuse_what_broke(too_fast);
-    phases_.stop();
 }
 
 void SoilSimulation::advance_pore_pressure(const std::array<double, 3>& body_force) {

@@ -11,6 +11,7 @@
 #include "domain/particles.hpp"
 #include "physics/soil/boundary_conditions.hpp"
 #include "physics/soil/constitutive.hpp"
+#include "physics/soil/moving_grids.hpp"
 #include "physics/soil/pore_pressure.hpp"
 #include "physics/soil/stencils.hpp"
 #include "physics/soil/taylor_galerkin.hpp"
@@ -30,6 +31,7 @@ struct SoilSetup {
     double damping = 0;                          ///< [1/s]
     double hourglass = 0, stress_smoothing = 0;  ///< as soil::StepSettings
     std::vector<soil::BoundaryCondition> conditions;
+    bool moves = false;             ///< large deformation: nodes and elements move
     bool saturated = false;         ///< pores hold water under pressure: the v-p_w model
     double pressure_smoothing = 0;  ///< soil::PorePressure::Settings::stabilisation
     double pressure_tolerance = 0;  ///< soil::PorePressure::Settings::tolerance
@@ -53,7 +55,8 @@ struct SoilTotals {
     std::vector<std::array<double, 3>> forces;
 };
 
-/// Soil as a continuum on two grids of particles: Runge-Kutta Taylor-SPH in small strain.
+/// Soil as a continuum on two grids of particles: Runge-Kutta Taylor-SPH in small strain, or moving with the
+/// soil in large deformation.
 class SoilSimulation {
   public:
     /// `particles` hold their share of the initial state or of a checkpoint, on any ranks, with the fields
@@ -92,6 +95,10 @@ class SoilSimulation {
     bool smooths() const { return setup_.hourglass > 0 || setup_.stress_smoothing > 0; }
     void advance_pore_pressure(const std::array<double, 3>& body_force);
     void arrange();
+    void list_stencils();
+    soil::StepSettings settings_now() const;
+    void step_at_rest(const soil::StepSettings& settings);
+    void step_moving(const soil::StepSettings& settings);
     std::uint64_t first_runaway() const;
     void refuse_what_broke(std::uint64_t too_fast);
     void add_force(const soil::BoundaryNode& node, std::span<class ExactSum> sums) const;
@@ -106,6 +113,7 @@ class SoilSimulation {
     std::vector<std::uint8_t> free_axes_;  ///< of soil::list_free_axes()
     bool any_free_face_ = false;           ///< on any rank
     soil::StepMemory memory_;
+    soil::MovingMemory moving_memory_;
     std::optional<soil::PorePressure> pore_pressure_;
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "domain/soil_fields.hpp"
+#include "physics/soil/node_density.hpp"
 #include "physics/soil/state_columns.hpp"
 
 namespace talus::soil {
@@ -38,13 +39,15 @@ std::vector<BoundaryNode> list_boundary_nodes(const ParticleSet& particles, cons
                                               std::span<const BoundaryCondition> conditions, double spacing) {
     const std::uint8_t* faces = particles.data(soil_field::faces);
     const std::uint32_t* held = particles.data(soil_field::conditions);
+    const bool moves = particles.has(soil_field::surface);
     std::vector<BoundaryNode> listed;
     std::uint32_t face_row = 0;
     stencils.for_each_node([&](std::uint32_t i) {
         if (faces[i] == 0 && held[i] == 0) return;
         std::array<double, 3> at{};
         for (int a = 0; a < particles.dimension(); ++a)
-            at[static_cast<std::size_t>(a)] = particles.data(field::position, a)[i];
+            at[static_cast<std::size_t>(a)] = particles.data(field::position, a)[i] -
+                                              (moves ? particles.data(soil_field::displacement, a)[i] : 0);
         BoundaryNode node{i, face_row, faces[i], held[i], {}};
         face_row += faces[i] != 0;
         for (const BoundaryCondition& condition : conditions)
@@ -176,6 +179,23 @@ void gather_tractions(std::span<const BoundaryNode> nodes, std::span<const Bound
                 outward(face) * stencils.own_weights[row + static_cast<std::size_t>(axis_of(face))];
             for (std::size_t b = 0; b < axes; ++b)
                 if (!imposed.held[b]) divergence[row + b] += weight * imposed.traction[b];
+        }
+}
+
+void apply_loads(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                 std::span<const BoundaryCondition> conditions, double time, const StepSettings& settings) {
+    const std::vector<double> factors = factors_at(conditions, time);
+    const NodeDensity density(particles, settings.materials);
+    for (const BoundaryNode& node : nodes)
+        for (Face face = 0; face < 2 * particles.dimension(); ++face) {
+            if (!(node.faces >> face & 1) || node.conditions == 0) continue;
+            const OnFace imposed = on_face(node, face, conditions, factors);
+            const double mass = particles.data(field::mass)[node.index];
+            const double area = face_area(mass, density[node.index], settings.spacing);
+            for (int a = 0; a < particles.dimension(); ++a)
+                if (!imposed.held[static_cast<std::size_t>(a)])
+                    particles.data(soil_field::velocity, a)[node.index] +=
+                        settings.time_step * area / mass * imposed.traction[static_cast<std::size_t>(a)];
         }
 }
 

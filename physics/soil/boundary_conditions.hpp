@@ -8,6 +8,7 @@
 #include "domain/particles.hpp"
 #include "physics/soil/constitutive.hpp"
 #include "physics/soil/stencils.hpp"
+#include "physics/soil/taylor_galerkin.hpp"
 #include "physics/soil/time_factor.hpp"
 
 namespace talus::soil {
@@ -45,7 +46,7 @@ struct BoundaryNode {
     std::vector<double> shares;
 };
 
-/// Of a rank's own nodes.
+/// Of a rank's own nodes, by where they were at the start.
 std::vector<BoundaryNode> list_boundary_nodes(const ParticleSet& particles, const Stencils& stencils,
                                               std::span<const BoundaryCondition> conditions, double spacing);
 
@@ -64,6 +65,11 @@ void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nod
 /// traction along one axis only one can be imposed on a face: the velocity goes first.
 void gather_tractions(std::span<const BoundaryNode> nodes, std::span<const BoundaryCondition> conditions,
                       double time, const Stencils& stencils, int dimension, std::vector<double>& divergence);
+
+/// Adds to the velocity of nodes what tractions at `time` do in a time step, on the faces as they were at the
+/// start.
+void apply_loads(ParticleSet& particles, std::span<const BoundaryNode> nodes,
+                 std::span<const BoundaryCondition> conditions, double time, const StepSettings& settings);
 
 /// In 1D: makes the stress at loaded ends at `time` that of the load, less that of the water.
 void impose_end_stress(ParticleSet& particles, std::span<const BoundaryNode> nodes,

@@ -50,36 +50,26 @@ double VonMises::fastest_rate(const Elasticity& elasticity) const {
     return 3 * elasticity.shear_modulus() + std::max(hardening, 0.0);
 }
 
-DruckerPrager::Cone DruckerPrager::cone(double tangent, Fit fit) {
-    if (fit == Fit::plane_strain) {
-        const double root = std::sqrt(9 + 12 * tangent * tangent);
-        return {tangent / root, 3 / root};
-    }
-    const double sine = tangent / std::sqrt(1 + tangent * tangent), cosine = std::sqrt(1 - sine * sine);
-    const double below = std::sqrt(3.0) * (3 + (fit == Fit::outer ? -sine : sine));
-    return {2 * sine / below, 6 * cosine / below};
-}
-
 Yielding DruckerPrager::at(const Tensor& stress, const History& history, double strength_factor) const {
-    const Cone surface = cone(strength_factor * friction, fit);
-    const double now = strength_factor * std::max(residual, cohesion + hardening * history.strain);
+    const double limit = strength_factor * std::max(residual, cohesion + hardening * history.strain);
+    const double slope = strength_factor * friction;
+    const Cone cone = cone_of_slopes(match, limit, slope, std::min(dilation, slope));
     const Tensor s = deviator(stress);
     const double root = std::sqrt(0.5 * contraction(s, s));
-    Yielding found{root + surface.alpha * trace(stress) - surface.k_over_cohesion * now, {}};
+    const double alpha = cone.friction / 3, along = cone.dilation / 3;
+    Yielding found{root + alpha * trace(stress) - cone.cohesion, {}};
     if (found.excess <= 0) return found;
-    const double along = cone(dilation, fit).alpha;
     // Beyond the apex shear cannot lead back. There the flow turns from the potential's, on the apex's mean
     // stress, to a change of volume alone, where no shear is left.
     const double beyond = std::max(0.0, found.excess - root);
-    const double volume = along + (surface.alpha - along) * beyond / found.excess;
+    const double volume = along + (alpha - along) * beyond / found.excess;
     for (std::size_t k = 0; k < 6; ++k) found.flow[k] = s[k] / (2 * (root + beyond)) + (k < 3 ? volume : 0);
     return found;
 }
 
 double DruckerPrager::fastest_rate(const Elasticity& elasticity) const {
-    const double alpha = cone(friction, fit).alpha;
-    return elasticity.shear_modulus() + 9 * elasticity.bulk_modulus() * alpha * alpha +
-           std::max(hardening, 0.0);
+    const double slope = cone_of_slopes(match, cohesion, friction, dilation).friction;
+    return elasticity.shear_modulus() + elasticity.bulk_modulus() * slope * slope + std::max(hardening, 0.0);
 }
 
 Yielding CamClay::at(const Tensor& stress, const History& history, double) const {

@@ -3,6 +3,8 @@
 #include <string>
 #include <variant>
 
+#include "physics/solid/plasticity.hpp"
+
 namespace talus::soil {
 
 /// Stress or strain: xx yy zz xy xz yz, tension positive; strains as tensors (e_xy, not 2 e_xy).
@@ -69,20 +71,13 @@ struct VonMises {
 /// D. C. Drucker, W. Prager, Quart. Appl. Math. 10 (1952) 157. Tension beyond the apex of the cone relaxes to
 /// it whatever the dilation.
 struct DruckerPrager {
-    /// Which Mohr-Coulomb surface the cone fits: in plane strain with flow, or outer or inner edges in 3D.
-    enum class Fit : unsigned char { plane_strain, outer, inner };
     double cohesion = 0;   ///< [Pa]
     double friction = 0;   ///< tan of the angle [1]
-    double dilation = 0;   ///< tan of the angle of the potential [1]
+    double dilation = 0;   ///< tan of the angle of the potential, not above that of friction [1]
     double hardening = 0;  ///< of the cohesion with strain, negative: softening [Pa]
     double residual = 0;   ///< least cohesion [Pa]
-    Fit fit = Fit::plane_strain;
+    ConeMatch match = ConeMatch::plane_strain;
 
-    struct Cone {
-        double alpha, k_over_cohesion;
-    };
-    /// Of an angle of friction, by its tangent.
-    static Cone cone(double tangent, Fit fit);
     Yielding at(const Tensor& stress, const History& history, double strength_factor) const;
     double fastest_rate(const Elasticity& elasticity) const;
 };

@@ -19,6 +19,7 @@ inline constexpr std::uint64_t no_id = ~std::uint64_t{0};
 /// What a step needs besides the particles.
 struct StepSettings {
     double time_step = 0;                ///< [s]
+    double spacing = 0;                  ///< of nodes at the start [m]
     std::array<double, 3> body_force{};  ///< [m/s2]
     double strength_factor = 1;          ///< on yield surfaces [1]
     double damping = 0;                  ///< rate at which velocities decay [1/s]

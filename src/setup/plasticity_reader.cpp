@@ -5,13 +5,6 @@
 
 namespace talus {
 
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Range positive{0, infinity, true};
-constexpr Range not_negative{0};
-
-/// An angle from 0 to less than 90 degrees [rad].
 double read_angle(const Section& table, std::string_view key, std::optional<double> default_value) {
     const double angle = table.number(key, "rad", default_value);
     if (angle >= 0 && angle < std::numbers::pi / 2) return angle;
@@ -19,22 +12,37 @@ double read_angle(const Section& table, std::string_view key, std::optional<doub
     return 0;
 }
 
-/// What a cone is made of.
-struct ConeKeys {
-    double cohesion, friction_angle, dilation_angle;
-};
-
-ConeMatch read_match(const Section& table, int dimension) {
+ConeMatch read_cone_match(const Section& table, int dimension) {
     const std::string name = table.choice("cone", {"plane_strain", "compression", "extension"},
                                           dimension == 3 ? "compression" : "plane_strain");
     if (name == "compression") return ConeMatch::compression;
     return name == "extension" ? ConeMatch::extension : ConeMatch::plane_strain;
 }
 
+void refuse_dilation_above_friction(const Section& table, std::string_view key, double dilation_angle,
+                                    double friction_angle) {
+    if (dilation_angle > friction_angle)
+        table.error(key, "is above the friction angle: flow would gain energy");
+}
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Range positive{0, infinity, true};
+constexpr Range not_negative{0};
+
+/// What a cone is made of.
+struct ConeKeys {
+    double cohesion, friction_angle, dilation_angle;
+};
+
 ConeKeys read_residual(const Section& table, const ConeKeys& peak) {
-    return {.cohesion = table.number("residual_cohesion", "Pa", peak.cohesion, not_negative),
-            .friction_angle = read_angle(table, "residual_friction_angle", peak.friction_angle),
-            .dilation_angle = read_angle(table, "residual_dilation_angle", 0.0)};
+    const ConeKeys keys{.cohesion = table.number("residual_cohesion", "Pa", peak.cohesion, not_negative),
+                        .friction_angle = read_angle(table, "residual_friction_angle", peak.friction_angle),
+                        .dilation_angle = read_angle(table, "residual_dilation_angle", 0.0)};
+    refuse_dilation_above_friction(table, "residual_dilation_angle", keys.dilation_angle,
+                                   keys.friction_angle);
+    return keys;
 }
 
 bool read_gaps(const Section& table) {
@@ -42,12 +50,11 @@ bool read_gaps(const Section& table) {
 }
 
 DruckerPrager read_drucker_prager(const Section& table, int dimension) {
-    const ConeMatch match = read_match(table, dimension);
+    const ConeMatch match = read_cone_match(table, dimension);
     const ConeKeys peak{.cohesion = table.number("cohesion", "Pa", 0.0, not_negative),
-                        .friction_angle = read_angle(table, "friction_angle", {}),
+                        .friction_angle = read_angle(table, "friction_angle"),
                         .dilation_angle = read_angle(table, "dilation_angle", 0.0)};
-    if (peak.dilation_angle > peak.friction_angle)
-        table.error("dilation_angle", "is above the friction angle: flow would gain energy");
+    refuse_dilation_above_friction(table, "dilation_angle", peak.dilation_angle, peak.friction_angle);
     if (peak.cohesion == 0 && peak.friction_angle == 0)
         table.error("friction_angle",
                     "soil without friction and cohesion bears no shear: leave out its "

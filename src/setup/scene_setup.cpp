@@ -203,6 +203,10 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
             read_geostatic(tables[b], setup.simulation.materials.back(), setup.simulation.even_gravity,
                            setup.bodies.back().shape, box.dimension);
         setup.simulation.walls.push_back(read_body_wall(tables[b], box.dimension));
+        if (setup.simulation.walls.back() && setup.bodies.back().geostatic)
+            tables[b]
+                .section("geostatic")
+                .error("", "does not go with wall: walls take the stress of what is in front");
         setup.simulation.held.push_back(tables[b].flag("held", false));
     }
     if (scene.faulty()) return;  // sizes and spacings may not fit each other

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "src/setup/names.hpp"
+#include "src/setup/plasticity_reader.hpp"
 #include "src/setup/shape_reader.hpp"
 
 namespace talus {
@@ -15,27 +15,26 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Range positive{0, infinity, true};
 constexpr Range not_negative{0};
-constexpr Range acute{0, 1.55};  // rad: below 90 degrees
 
-soil::YieldSurface read_surface(const Section& table) {
+soil::YieldSurface read_surface(const Section& table, const SoilSetup& setup) {
     const std::string kind = table.choice("kind", {"von_mises", "drucker_prager", "cam_clay"});
     if (kind == "von_mises")
         return soil::VonMises{.yield_stress = table.number("yield_stress", "Pa", {}, positive),
                               .hardening = table.number("hardening", "Pa", 0.0),
                               .residual = table.number("residual", "Pa", 0.0, not_negative)};
     if (kind == "drucker_prager") {
-        const std::string fit = table.choice("fit", {"plane_strain", "outer", "inner"}, "plane_strain");
-        const double friction = table.number("friction_angle", "rad", {}, acute);
-        return soil::DruckerPrager{
-            .cohesion = table.number("cohesion", "Pa", {}, not_negative),
-            .friction = std::tan(friction),
-            .dilation = std::tan(table.number("dilation_angle", "rad", 0.0, {0, friction})),
-            .hardening = table.number("hardening", "Pa", 0.0),
-            .residual = table.number("residual", "Pa", 0.0, not_negative),
-            .fit = fit == "outer"   ? soil::DruckerPrager::Fit::outer
-                   : fit == "inner" ? soil::DruckerPrager::Fit::inner
-                                    : soil::DruckerPrager::Fit::plane_strain};
+        const double friction = read_angle(table, "friction_angle");
+        const double dilation = read_angle(table, "dilation_angle", 0.0);
+        refuse_dilation_above_friction(table, "dilation_angle", dilation, friction);
+        return soil::DruckerPrager{.cohesion = table.number("cohesion", "Pa", {}, not_negative),
+                                   .friction = std::tan(friction),
+                                   .dilation = std::tan(dilation),
+                                   .hardening = table.number("hardening", "Pa", 0.0),
+                                   .residual = table.number("residual", "Pa", 0.0, not_negative),
+                                   .match = read_cone_match(table, setup.dimension)};
     }
+    if (!setup.strength_factor.times.empty())
+        table.error("kind", "modified Cam-Clay does not go with soil.strength_change");
     soil::CamClay clay{.slope = table.number("slope", "1", {}, positive),
                        .compression = table.number("compression", "1", {}, positive),
                        .swelling = table.number("swelling", "1", {}, positive),
@@ -54,7 +53,7 @@ double default_reference(const soil::YieldSurface& surface) {
 
 }  // namespace
 
-soil::Material read_soil_material(const Section& root, const Section& body, bool saturated) {
+soil::Material read_soil_material(const Section& root, const Section& body, const SoilSetup& setup) {
     soil::Material material;
     material.name = body.text("material");
     const Section table = root.section("materials").section(material.name);
@@ -65,13 +64,13 @@ soil::Material read_soil_material(const Section& root, const Section& body, bool
     material.density = table.number("density", "kg/m3", {}, positive);
     material.elasticity.youngs_modulus = table.number("youngs_modulus", "Pa", {}, positive);
     material.elasticity.poisson_ratio = table.number("poisson_ratio", "1", {}, {0, 0.495});
-    if (saturated) {
+    if (setup.saturated) {
         material.permeability = table.number("permeability", "m3 s kg-1", {}, not_negative);
         material.storage = 1 / table.number("mixture_stiffness", "Pa", {}, positive);
     }
     const Section yield = table.section("yield");
     if (!yield.exists()) return material;
-    material.surface = read_surface(yield);
+    material.surface = read_surface(yield, setup);
     material.overstress.fluidity = yield.number("fluidity", "s-1", {}, positive);
     material.overstress.exponent = yield.number("exponent", "1", 1.0, {1, 10});
     const double reference = default_reference(material.surface);
@@ -99,6 +98,18 @@ soil::TimeFactor read_time_factor(const Section& table, std::string_view key) {
                      fmt::format("has {} values for {} times", factor.values.size(), factor.times.size()));
         return {};
     }
+    return factor;
+}
+
+soil::TimeFactor read_strength_factor(const Section& table, std::string_view key) {
+    const soil::TimeFactor factor = read_time_factor(table, key);
+    if (factor.frequency > 0) table.section(key).error("frequency", "a strength has no frequency");
+    for (const double value : factor.values)
+        if (!(value > 0)) {
+            table.section(key).error("values",
+                                     fmt::format("{} is not above 0: leave out the strength", value));
+            break;
+        }
     return factor;
 }
 

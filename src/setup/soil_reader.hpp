@@ -14,9 +14,12 @@ inline constexpr std::array<std::string_view, 6> face_names = {"x_lower", "x_upp
 
 // Parts of a scene of soil. Faults are recorded in the scene.
 
-/// `saturated`: with what water in its pores needs.
-/// The material that a body's key `material` names, from the scene's table [materials.NAME].
-soil::Material read_soil_material(const Section& root, const Section& body, bool saturated);
+/// The material that a body's key `material` names, from the scene's table [materials.NAME], for what `setup`
+/// says: with what water in pores needs, and no surface that cannot follow a change of strength.
+soil::Material read_soil_material(const Section& root, const Section& body, const SoilSetup& setup);
+
+/// A factor on yield surfaces, above 0 always, under `key`; absent: 1 for ever.
+soil::TimeFactor read_strength_factor(const Section& table, std::string_view key);
 
 /// A table with times and values, or a frequency, under `key`; absent: 1 for ever.
 soil::TimeFactor read_time_factor(const Section& table, std::string_view key);

@@ -124,7 +124,7 @@ void read_soil_bodies(const Communicator& comm, const Scene& scene, SoilScene& s
         SoilBody body;
         body.name = table.text("name", table.path());
         refuse_same_name(table, soil.bodies, body.name);
-        soil.simulation.materials.push_back(read_soil_material(root, table, soil.simulation.saturated));
+        soil.simulation.materials.push_back(read_soil_material(root, table, soil.simulation));
         body.shape = read_shape(table, soil.simulation.materials.back().density, context);
         body.velocity = origin_default(table, "velocity", "m/s", context.dimension);
         soil.bodies.push_back(body);
@@ -147,24 +147,34 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     SoilSetup& setup = soil.simulation;
     setup.dimension = static_cast<int>(root.integer("dimension", 3, 1, 3));
     setup.spacing = table.number("spacing", "m", {}, positive);
-    setup.courant = table.number("courant", "1", 0.9, {0, 1, true});
+    setup.moves = table.choice("deformation", {"small", "large"}, "small") == "large";
+    setup.courant = table.number("courant", "1", setup.moves ? 0.6 : 0.9, {0, 1, true});
     setup.damping = table.number("damping", "s-1", 0.0, not_negative);
-    setup.hourglass = table.number("hourglass", "1", setup.dimension == 1 ? 0 : 0.05, {0, 0.5});
+    setup.hourglass = table.number("hourglass", "1",
+                                   setup.dimension == 1 ? 0
+                                   : setup.moves        ? 0.2
+                                                        : 0.05,
+                                   {0, 0.5});
     setup.gravity = origin_default(table, "gravity", "m/s2", setup.dimension);
     setup.gravity_factor = read_time_factor(table, "gravity_change");
-    setup.strength_factor = read_time_factor(table, "strength_change");
-    soil.smoothing = table.number("smoothing", "1", soil::default_smoothing, {0.4, 1});
+    setup.strength_factor = read_strength_factor(table, "strength_change");
+    soil.smoothing = setup.moves ? table.number("smoothing", "1", soil::default_moving_smoothing, {0.8, 1.5})
+                                 : table.number("smoothing", "1", soil::default_smoothing, {0.4, 1});
     soil.jitter = table.number("jitter", "1", 0.0, {0, 0.25});
     setup.saturated = table.flag("saturated", false);
     if (setup.saturated) {
         setup.pressure_smoothing = table.number("pressure_smoothing", "1", 0.0, not_negative);
         setup.pressure_tolerance = table.number("pressure_tolerance", "1", 1e-10, {1e-15, 1e-2});
         if (soil.jitter > 0) table.error("jitter", "a saturated soil needs an even lattice");
+        if (setup.moves) table.error("deformation", "saturated soil is of small strain only");
     }
     read_soil_bodies(comm, scene, soil);
     bool flows = false;
     for (const soil::Material& material : setup.materials) flows |= material.flows();
-    const double smoothing = setup.dimension == 1 ? 0 : soil.jitter > 0 ? 0.1 : flows ? 0.02 : 0;
+    const double smoothing = setup.dimension == 1                        ? 0
+                             : soil.jitter > 0 || (setup.moves && flows) ? 0.1
+                             : flows                                     ? 0.02
+                                                                         : 0;
     setup.stress_smoothing = table.number("stress_smoothing", "1", smoothing, {0, 0.5});
     if (setup.dimension == 1) {
         const bool bar = table.choice("across", {"confined", "free"}, "confined") == "free";
@@ -293,6 +303,9 @@ void put(const SoilScene& scene, ParticleSet& particles, std::uint64_t id, const
     particles.data(field::id)[i] = id;
     particles.data(field::body)[i] = body;
     particles.data(field::smoothing_length)[i] = scene.smoothing * scene.lattice.spacing;
+    const bool knows_volume = particles.has(soil_field::volume);
+    if (knows_volume)
+        particles.data(soil_field::volume)[i] = std::pow(scene.lattice.spacing, particles.dimension());
     for (int a = 0; a < particles.dimension(); ++a) {
         particles.data(field::position, a)[i] = at[static_cast<std::size_t>(a)];
         particles.data(soil_field::velocity, a)[i] = scene.bodies[body].velocity[static_cast<std::size_t>(a)];
@@ -310,6 +323,11 @@ void put_node(const SoilScene& scene, ParticleSet& particles, std::uint64_t id,
             particles.data(field::mass)[i] += share * scene.simulation.materials[body].density;
     if (particles.has(soil_field::volume)) particles.data(soil_field::volume)[i] = share * node.cell_count();
     particles.data(soil_field::faces)[i] = node.faces;
+    for (int a = 0; a < particles.dimension() && particles.has(soil_field::surface); ++a)
+        for (unsigned k = 0; k < 1u << scene.lattice.dimension; ++k)
+            if (node.around[k] != no_body)
+                particles.data(soil_field::surface, a)[i] +=
+                    (k >> a & 1 ? -1 : 1) * std::pow(scene.lattice.spacing / 2, scene.lattice.dimension - 1);
     for (std::size_t c = 0; c < scene.simulation.conditions.size(); ++c)
         if (holds(scene, c, node)) particles.data(soil_field::conditions)[i] |= std::uint32_t{1} << c;
     if (!particles.has(soil_field::preconsolidation)) return;

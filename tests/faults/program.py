@@ -46,12 +46,28 @@ class BadInput(Case):
                 ((strength + "kind=mu_i",), (r"friction_static", r"grain_diameter", r"friction_angle")),
                 (("body[2].normal=[0,0]",), (r"body\[2\]\.normal.*no direction",)),
                 (("body[1].held=true", "body[1].velocity=[1,0]"), (r"held.*does not go with wall", r"velocity.*motion")),
+                (("body[1].geostatic={}",), (r"body\[1\]\.geostatic.*does not go with wall",)),
+                ((strength + "softening_strain=0.1", strength + "residual_friction_angle=10 deg",
+                  strength + "residual_dilation_angle=12 deg"), (r"residual_dilation_angle.*above the friction",)),
                 (("sph.contacts=frictionless",), (r"sph\.contacts.*bonded",))):
             options = [option for setting in settings for option in ("--set", setting)]
             self.assert_fails(talus("check", column, "--quick", *options, ranks=0), 2, *patterns)
         text = (column / "scene.toml").read_text()
         done = talus("check", self.scene(text.replace("gravity = ", "# gravity = ")), "--quick", ranks=0)
         self.assert_fails(done, 2, r"body\[0\]\.geostatic.*needs sph\.gravity")
+
+    def test_viscoplastic_soil_that_cannot_be(self):
+        band, sand, cut = RUNS / "shear_band", "materials.sand.yield.", RUNS / "vertical_cut"
+        for scene, settings, pattern in (
+                (band, (sand + "friction_angle=90 deg",), r"friction_angle.*less than 90 deg"),
+                (band, (sand + "dilation_angle=29 deg",), r"dilation_angle.*above the friction angle"),
+                (band, (sand + "cone=outer",), r"cone = .*compression"),
+                (cut, ("soil.strength_change={times=[0,1],values=[1,0]}",), r"strength_change\.values.*not above 0"),
+                (cut, ("soil.strength_change={frequency=1}",), r"strength_change\.frequency"),
+                (cut, ("materials.clay.yield={kind=\"cam_clay\",slope=1,compression=0.2,swelling=0.1,void_ratio=1,"
+                       "preconsolidation=1e5,fluidity=1}",), r"yield\.kind.*strength_change")):
+            options = [option for setting in settings for option in ("--set", setting)]
+            self.assert_fails(talus("check", scene, "--quick", *options, ranks=0), 2, pattern)
 
     def test_saturated_soil_with_a_tight_face_that_nothing_holds(self):
         done = talus("check", RUNS / "saturated_stratum", "--quick", "--set", "boundary[4].kind=traction",

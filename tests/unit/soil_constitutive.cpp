@@ -76,7 +76,7 @@ TEST(SoilDruckerPrager, TriaxialStrengthIsThatOfMohrAndCoulombOnTheEdgesItFits) 
         const double other = -((1 + sine) / (1 - sine) * -confinement + 2 * cohesion * cosine / (1 - sine));
         const DruckerPrager surface{.cohesion = cohesion,
                                     .friction = std::tan(friction),
-                                    .fit = outer ? DruckerPrager::Fit::outer : DruckerPrager::Fit::inner};
+                                    .match = outer ? ConeMatch::compression : ConeMatch::extension};
         const Tensor stress = outer ? Tensor{other, confinement, confinement, 0, 0, 0}
                                     : Tensor{confinement, other, other, 0, 0, 0};
         EXPECT_NEAR(surface.at(stress, {}, 1).excess, 0, 1e-6 * std::abs(other));
