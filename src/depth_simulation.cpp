@@ -35,7 +35,7 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
          &field::predicted_velocity, &field::next_smoothing_length, &field::column_height,
          &field::grad_h_volume, &field::pressure_factor, &field::wave_speed, &field::signal_speed});
     if (settings.balance) add({&field::still_acceleration});
-    if (settings.earth_pressure) add({&field::divergence});
+    if (settings.earth_pressure) add({&field::divergence, &field::earth_pressure});
     const bool fitted = settings.form == depth::Form::bed_fitted;
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
     const bool by_level = settings.gradient == depth::Gradient::level;
@@ -101,8 +101,7 @@ void DepthSimulation::step() {
     const double dt = time_step_;
     phases_.enter(Phase::motion);
     depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
-    sph::drift(particles_, dt);
-    if (setup_.settings.entrainment > 0) depth::entrain(particles_, setup_.settings, dt);
+    depth::drift(particles_, setup_.settings, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
     const Decomposition::Ledger gone = outflow_.take(particles_, *setup_.terrain, time_ + dt);
@@ -143,6 +142,8 @@ void DepthSimulation::evaluate(double time_ahead) {
     find_heights();
     phases_.enter(Phase::material);
     const std::vector<double> loads_before = loads();
+    if (const auto& law = setup_.settings.earth_pressure)
+        depth::strain_earth_pressure(particles_, *law, 2 * time_ahead);
     depth::meet_bed(particles_, *setup_.terrain, setup_.settings);
     if (setup_.pore_pressure) consolidate(loads_before, 2 * time_ahead);
     pass_count_.pairs = 0;

@@ -97,16 +97,21 @@ void advance(ParticleSet& particles, const Settings& settings, const BasalFricti
 }
 
 template <int D>
-void take_up(ParticleSet& particles, const Settings& settings, double time) {
-    const auto v = sph::components_to_write<D>(particles, field::velocity);
+void drift_and_take_up(ParticleSet& particles, const Settings& settings, double time) {
+    const auto x = sph::components_to_write<D>(particles, field::position),
+               v = sph::components_to_write<D>(particles, field::velocity);
     double* volume = particles.data(field::volume);
     const Bed<D> bed(particles, settings);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         std::array<double, D> v_i;
         for (std::size_t d = 0; d < D; ++d) v_i[d] = v[d][i];
-        const double growth = std::exp(settings.entrainment * bed.speed(i, v_i) * time);
-        volume[i] *= growth;
-        for (std::size_t d = 0; d < D; ++d) v[d][i] /= growth;
+        const double taken = settings.entrainment * bed.speed(i, v_i) * time;
+        const double way = taken > 0 ? std::log1p(taken) / taken : 1;  // in terms of the first velocity's
+        volume[i] *= 1 + taken;
+        for (std::size_t d = 0; d < D; ++d) {
+            x[d][i] += v_i[d] * time * way;
+            v[d][i] = v_i[d] / (1 + taken);
+        }
     }
 }
 
@@ -120,11 +125,13 @@ void predict(ParticleSet& particles, const Settings& settings, const BasalFricti
     advance(particles, settings, friction, time, field::predicted_velocity);
 }
 
-void entrain(ParticleSet& particles, const Settings& settings, double time) {
-    if (particles.dimension() == 1)
-        take_up<1>(particles, settings, time);
+void drift(ParticleSet& particles, const Settings& settings, double time) {
+    if (settings.entrainment == 0)
+        sph::drift(particles, time);
+    else if (particles.dimension() == 1)
+        drift_and_take_up<1>(particles, settings, time);
     else
-        take_up<2>(particles, settings, time);
+        drift_and_take_up<2>(particles, settings, time);
 }
 
 void fade_balance(ParticleSet& particles, double time) {

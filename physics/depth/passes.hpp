@@ -17,6 +17,9 @@ namespace talus::depth {
 /// (predicted_velocity) of partners.
 void height_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
 
+/// Moves the coefficients of earth pressure on by the strain of a time step. Reads divergence.
+void strain_earth_pressure(ParticleSet& particles, const EarthPressure& law, double time_step);
+
 /// What follows from a column and the bed under it: takes over next_smoothing_length, sets depth, wave_speed,
 /// and pressure_factor, and those of bed_slope and apparent_gravity that the set has.
 void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& settings);

@@ -17,10 +17,18 @@ enum class Gradient : std::uint8_t {
            ///< its level alone; neither momentum nor energy are kept pair by pair
 };
 
-/// Coefficients of lateral earth pressure: S. B. Savage, K. Hutter, J. Fluid Mech. 199 (1989) 177.
+/// Coefficients of lateral earth pressure: S. B. Savage, K. Hutter, J. Fluid Mech. 199 (1989) 177. Between
+/// the limits the coefficient K follows the strain, as that of an elastic body: K = active at the start, and
+///
+///     dK/dt = - stiffness div v,   active <= K <= passive.
+///
+/// A coefficient that jumps where div v changes its sign lets rounding errors throw columns about that rest.
 struct EarthPressure {
-    double active;   ///< where the flow spreads [1]
-    double passive;  ///< where it is compressed [1]
+    double active;                   ///< where the flow spreads [1]
+    double passive;                  ///< where it is compressed [1]
+    double mobilizing_strain = 0.2;  ///< that takes K from one limit to the other [1]
+
+    double stiffness() const { return (passive - active) / mobilizing_strain; }
 };
 
 /// Choices and parameters of the depth-integrated model.

@@ -35,7 +35,8 @@ std::optional<depth::EarthPressure> read_earth_pressure(const Section& table, do
         return {};
     }
     return depth::EarthPressure{.active = 2 * (1 - std::sqrt(root2)) / cos2 - 1,
-                                .passive = 2 * (1 + std::sqrt(root2)) / cos2 - 1};
+                                .passive = 2 * (1 + std::sqrt(root2)) / cos2 - 1,
+                                .mobilizing_strain = table.number("mobilizing_strain", "1", 0.2, positive)};
 }
 
 bool any_level(const Section& root) {
