@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "domain/depth_fields.hpp"
+#include "domain/two_phase_fields.hpp"
 #include "physics/depth/kernel.hpp"
 #include "physics/depth/motion.hpp"
 #include "physics/depth/passes.hpp"
@@ -80,6 +81,23 @@ void slide(ParticleSet& particles, const Settings& settings) {
     }
 }
 
+/// After meet(): what of the pressure within a phase the other one makes. Solid, (1 - w) h_s h/2 and w
+/// h_s^2/2; water, h_w^2/2 + h_w h_s: its height over the ground counts, not that over the solid.
+void meet_other_phase(ParticleSet& particles, const TwoPhase& phases) {
+    const double *height = particles.data(field::column_height), *other = particles.data(field::other_height),
+                 *is_water = particles.data(field::is_water);
+    double *factor = particles.data(field::pressure_factor), *wave_speed = particles.data(field::wave_speed),
+           *gravity = particles.data(field::lateral_gravity);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const double ratio = other[i] / height[i];
+        gravity[i] = wave_speed[i] * wave_speed[i] / height[i];
+        const double greater = is_water[i] != 0 ? 1 + 2 * ratio : 1 + (1 - phases.buoyancy()) * ratio;
+        factor[i] *= greater;
+        // The fastest wave is that of both together; from column to column only the pressure within a phase acts.
+        wave_speed[i] *= std::sqrt(std::max(greater, 1 + ratio));
+    }
+}
+
 }  // namespace
 
 void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& settings) {
@@ -87,6 +105,7 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
         meet<1>(particles, terrain, settings);
     else
         meet<2>(particles, terrain, settings);
+    if (settings.two_phase) meet_other_phase(particles, *settings.two_phase);
 }
 
 void strain_earth_pressure(ParticleSet& particles, const EarthPressure& law, double time_step) {

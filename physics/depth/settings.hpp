@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "physics/depth/two_phase.hpp"
+
 namespace talus::depth {
 
 /// How the equations meet a bed that is not level.
@@ -43,6 +45,7 @@ struct Settings {
     double viscosity = 1;                 ///< of approaching columns, in terms of a Riemann problem's [1]
     bool curvature = true;                ///< of the bed, in the pressure on it; form = bed_fitted only
     std::optional<EarthPressure> earth_pressure{};  ///< none: hydrostatic
+    std::optional<TwoPhase> two_phase{};            ///< none: one material
     double entrainment = 0;                         ///< E_s: growth of the volume for each metre of way [1/m]
     double courant = 0.4;                           ///< C in dt = C smoothing length / signal speed
 

@@ -17,17 +17,17 @@ namespace {
 constexpr double gravity = 9.81;
 constexpr double active = (1 - 0.5) / (1 + 0.5), passive = 1 / active;  // sin(30 deg) = 0.5
 
-// All of it spreads: Ritter's solution with gravity K_act g, its waves with sqrt(K_act g h). Bounds: those of the
-// hydrostatic dam break (depth_dam_breaks.cpp); velocities are smaller by sqrt(K_act).
+// All of it spreads: Ritter's solution with gravity K_act g, its waves with sqrt(K_act g h). Bounds: those of
+// the hydrostatic dam break (depth_dam_breaks.cpp); velocities are smaller by sqrt(K_act).
 TEST(DepthEarthPressure, AnActiveDamBreakIsRittersWithLessGravity) {
     const Communicator comm(MPI_COMM_SELF);
     const reference::DamBreak exact(1, 0, active * gravity);
     std::vector<double> depths, speeds;
     for (const int particles : {400, 1600}) {
-        const DepthResult flow = run_depth(
-            comm, depth_scene(comm, std::filesystem::path(TALUS_SOURCE_DIR) / "runs/dam_break",
-                              {"depth.internal_friction_angle=\"30 deg\"", "run.end_time=3",
-                               fmt::format("release[0].particles={}", particles)}));
+        const DepthResult flow =
+            run_depth(comm, depth_scene(comm, std::filesystem::path(TALUS_SOURCE_DIR) / "runs/dam_break",
+                                        {"depth.internal_friction_angle=\"30 deg\"", "run.end_time=3",
+                                         fmt::format("release[0].particles={}", particles)}));
         const auto error = [&](auto&& value) { return flow.mean_error(value, -15, 15); };
         depths.push_back(
             error([&](std::size_t k) { return flow.depth[k] - exact.at(flow.x[k], flow.time).depth; }));
@@ -42,8 +42,8 @@ TEST(DepthEarthPressure, AnActiveDamBreakIsRittersWithLessGravity) {
     EXPECT_GT(order_of(speeds.front(), speeds.back()) / 2, 0.85);
 }
 
-/// A parabolic heap of half length L, thrown together: it stays a parabola, and its coefficient of earth pressure
-/// is the same all over, L'' = 2 K g H_0 L_0/L^2, K' = - stiffness L'/L within its limits.
+/// A parabolic heap of half length L, thrown together: it stays a parabola, and its coefficient of earth
+/// pressure is the same all over, L'' = 2 K g H_0 L_0/L^2, K' = - stiffness L'/L within its limits.
 struct Heap {
     double length, speed, coefficient = active;
 
@@ -72,8 +72,8 @@ double spread(const ParticleSet& columns) {
     return std::sqrt(sum / volume);
 }
 
-// Into the passive limit, turned round by it, and out again. The error is 8e-4 and 5e-3 of the first length; it does
-// not fall with the spacing, since columns that are compressed far do not stay in even distances.
+// Into the passive limit, turned round by it, and out again. The error is 8e-4 and 5e-3 of the first length;
+// it does not fall with the spacing, since columns that are compressed far do not stay in even distances.
 TEST(DepthEarthPressure, AHeapThrownTogetherReachesThePassiveLimit) {
     const Communicator comm(MPI_COMM_SELF);
     constexpr double length = 10, depth = 1, closing = 4;
@@ -100,24 +100,24 @@ TEST(DepthEarthPressure, AHeapThrownTogetherReachesThePassiveLimit) {
             shortest = std::min(shortest, found);
             most = std::max(most, exact.coefficient);
         }
-        fmt::print("heap thrown together: {} columns, shortest {:.4f}, error of the length {:.2e}, then {:.4f}, "
-                   "exact {:.4f}\n",
-                   particles, shortest, worst, spread(flow.particles()) / first,
-                   exact.length / length);
+        fmt::print(
+            "heap thrown together: {} columns, shortest {:.4f}, error of the length {:.2e}, then {:.4f}, "
+            "exact {:.4f}\n",
+            particles, shortest, worst, spread(flow.particles()) / first, exact.length / length);
         EXPECT_EQ(most, passive);
         EXPECT_LT(shortest, 0.9);
         EXPECT_LT(worst, 0.01);
     }
 }
 
-// A layer that rests does so whatever its rounding errors say: a coefficient that jumped with the sign of div v
-// made it boil.
+// A layer that rests does so whatever its rounding errors say: a coefficient that jumped with the sign of div
+// v made it boil.
 TEST(DepthEarthPressure, ALayerAtRestStaysAtRest) {
     const Communicator comm(MPI_COMM_SELF);
-    const DepthResult flow =
-        run_depth(comm, depth_scene(comm, std::filesystem::path(TALUS_SOURCE_DIR) / "runs/dam_break",
-                                    {R"(release=[{shape="box", lower=[-20], upper=[20], depth=1, particles=200}])",
-                                     "depth.internal_friction_angle=\"30 deg\"", "run.end_time=20"}));
+    const DepthResult flow = run_depth(
+        comm, depth_scene(comm, std::filesystem::path(TALUS_SOURCE_DIR) / "runs/dam_break",
+                          {R"(release=[{shape="box", lower=[-20], upper=[20], depth=1, particles=200}])",
+                           "depth.internal_friction_angle=\"30 deg\"", "run.end_time=20"}));
     EXPECT_LT(flow.greatest_speed, 1e-12);
 }
 

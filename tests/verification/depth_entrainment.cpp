@@ -36,8 +36,8 @@ DepthScene frictionless(int dimension, bool is_layer, double slope) {
     return scene;
 }
 
-// Nothing else acts: v = v_0/(1 + E v_0 t), s = ln(1 + E v_0 t)/E. Without error but rounding, 1e-13 over some
-// hundred steps.
+// Nothing else acts: v = v_0/(1 + E v_0 t), s = ln(1 + E v_0 t)/E. Without error but rounding, 1e-13 over
+// some hundred steps.
 TEST(DepthEntrainment, AnEvenLayerSlowsDownAsHungrsLawSays) {
     const Communicator comm(MPI_COMM_SELF);
     const DepthScene scene = frictionless(1, true, 0);
@@ -53,8 +53,8 @@ TEST(DepthEntrainment, AnEvenLayerSlowsDownAsHungrsLawSays) {
     }
 }
 
-// Down a slope, with the acceleration a along it: v^2 = (a/E) (1 - exp(-2 E s)) + v_0^2 exp(-2 E s); so it never
-// is faster than sqrt(a/E). The leapfrog's error is of second order in the step.
+// Down a slope, with the acceleration a along it: v^2 = (a/E) (1 - exp(-2 E s)) + v_0^2 exp(-2 E s); so it
+// never is faster than sqrt(a/E). The leapfrog's error is of second order in the step.
 TEST(DepthEntrainment, ALayerDownASlopeReachesItsGreatestSpeed) {
     const Communicator comm(MPI_COMM_SELF);
     std::vector<double> errors;
