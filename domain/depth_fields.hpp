@@ -32,6 +32,9 @@ inline constexpr Field<double> still_acceleration{
     owner,
     "what the sums over columns make of a lake that should stay at rest, taken off the acceleration"};
 
+inline constexpr Field<double> earth_pressure{
+    "earth_pressure", "1", scalar, state, owner, "coefficient of lateral earth pressure"};
+
 inline constexpr Field<double> column_height{
     "column_height", "m", scalar, work, owner, "kernel sum of the volumes around: volume for each plan area"};
 inline constexpr Field<double> grad_h_volume{

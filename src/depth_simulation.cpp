@@ -9,6 +9,7 @@
 #include "domain/boundary.hpp"
 #include "domain/depth_fields.hpp"
 #include "domain/pore_pressure_field.hpp"
+#include "domain/two_phase_fields.hpp"
 #include "src/step_support.hpp"
 
 namespace talus {
@@ -35,7 +36,10 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
          &field::predicted_velocity, &field::next_smoothing_length, &field::column_height,
          &field::grad_h_volume, &field::pressure_factor, &field::wave_speed, &field::signal_speed});
     if (settings.balance) add({&field::still_acceleration});
-    if (settings.earth_pressure) add({&field::divergence});
+    if (settings.earth_pressure) add({&field::divergence, &field::earth_pressure});
+    if (settings.two_phase)
+        add({&field::is_water, &field::other_height, &field::other_cover, &field::lateral_gravity,
+             &field::relative_velocity, &field::exchange});
     const bool fitted = settings.form == depth::Form::bed_fitted;
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
     const bool by_level = settings.gradient == depth::Gradient::level;
@@ -101,8 +105,7 @@ void DepthSimulation::step() {
     const double dt = time_step_;
     phases_.enter(Phase::motion);
     depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
-    sph::drift(particles_, dt);
-    if (setup_.settings.entrainment > 0) depth::entrain(particles_, setup_.settings, dt);
+    depth::drift(particles_, setup_.settings, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
     const Decomposition::Ledger gone = outflow_.take(particles_, *setup_.terrain, time_ + dt);
@@ -115,6 +118,7 @@ void DepthSimulation::step() {
     phases_.enter(Phase::motion);
     depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
     if (setup_.settings.balance) depth::fade_balance(particles_, dt);
+    if (setup_.settings.two_phase) drag(dt);
     time_ += dt;
     ++step_;
     conclude_step();
@@ -131,9 +135,30 @@ void DepthSimulation::find_heights() {
     if (settings.earth_pressure)
         overlapped(phases_, Phase::density, decomposition_.halo(), particles_,
                    {&field::position, &field::volume, &field::predicted_velocity}, pass);
+    else if (settings.two_phase)
+        overlapped(phases_, Phase::density, decomposition_.halo(), particles_,
+                   {&field::position, &field::volume, &field::smoothing_length, &field::is_water}, pass);
     else
         overlapped(phases_, Phase::density, decomposition_.halo(), particles_,
                    {&field::position, &field::volume}, pass);
+}
+
+/// Drag between solid and water for a time, with the velocities as they are now.
+void DepthSimulation::drag(double time) {
+    for (int axis = 0; axis < particles_.dimension(); ++axis) {
+        const auto now = std::as_const(particles_).own(field::velocity, axis);
+        std::copy(now.begin(), now.end(), particles_.data(field::predicted_velocity, axis));
+    }
+    overlapped(phases_, Phase::forces, decomposition_.halo(), particles_, {&field::predicted_velocity},
+               [&](Cells cells) {
+                   depth::relative_velocity_pass(particles_, decomposition_.table(), cells, setup_.settings,
+                                                 time);
+               });
+    overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
+               {&field::relative_velocity, &field::exchange}, [&](Cells cells) {
+                   depth::drag_pass(particles_, decomposition_.table(), cells, setup_.settings);
+               });
+    phases_.enter(Phase::motion);
 }
 
 /// Everything that follows from positions and the predicted velocities.
@@ -143,8 +168,16 @@ void DepthSimulation::evaluate(double time_ahead) {
     find_heights();
     phases_.enter(Phase::material);
     const std::vector<double> loads_before = loads();
+    if (const auto& law = setup_.settings.earth_pressure)
+        depth::strain_earth_pressure(particles_, *law, 2 * time_ahead);
     depth::meet_bed(particles_, *setup_.terrain, setup_.settings);
     if (setup_.pore_pressure) consolidate(loads_before, 2 * time_ahead);
+    if (setup_.settings.two_phase) {
+        phases_.enter(Phase::halo);
+        decomposition_.halo().begin(particles_,
+                                    {&field::other_height, &field::other_cover, &field::lateral_gravity});
+        decomposition_.halo().finish();
+    }
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
     const bool by_level = setup_.settings.gradient == depth::Gradient::level;

@@ -52,7 +52,9 @@ struct DepthTotals {
     std::array<double, 2> centre{};                         ///< of the volume, in plan [m]
     std::array<double, 2> least_place{}, greatest_place{};  ///< corners of what the flow covers [m]
     double greatest_speed = 0, greatest_depth = 0;
-    double stopped = 0;  ///< share of the volume that does not move at all [1]
+    double stopped = 0;                    ///< share of the volume that does not move at all [1]
+    double water_volume = 0;               ///< of two phases [m3]
+    std::array<double, 2> water_centre{};  ///< in plan [m]
 };
 
 /// Columns of a flow over terrain under depth-integrated equations.
@@ -99,6 +101,10 @@ class DepthSimulation {
     void save_numbers(std::map<std::string, double>& numbers) const { outflow_.save(numbers); }
     /// Collective.
     DepthTotals totals() const;
+    /// Of the column's material [kg/m3].
+    double density(std::size_t i) const;
+    /// Of the whole flow where a column is, both phases if there are two: as depth is of one [m].
+    double whole_depth(std::size_t i) const;
 
   private:
     void arrange();
@@ -107,6 +113,7 @@ class DepthSimulation {
     void evaluate(double time_ahead);
     std::vector<double> loads() const;
     void consolidate(std::span<const double> loads_before, double time_step);
+    void drag(double time);
     void conclude_step();
 
     const Communicator& comm_;

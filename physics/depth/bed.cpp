@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "domain/depth_fields.hpp"
+#include "domain/two_phase_fields.hpp"
 #include "physics/depth/kernel.hpp"
 #include "physics/depth/motion.hpp"
 #include "physics/depth/passes.hpp"
@@ -19,11 +20,6 @@ double centripetal(const TerrainPoint& ground, const std::array<double, D>& v) {
     return sum;
 }
 
-double lateral(const Settings& settings, double divergence) {
-    if (!settings.earth_pressure) return 1;
-    return divergence < 0 ? settings.earth_pressure->passive : settings.earth_pressure->active;
-}
-
 template <int D>
 void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settings) {
     const auto x = sph::components<D>(particles, field::position),
@@ -35,7 +31,8 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
     std::array<double*, D> slope{};
     if (particles.has(field::bed_slope)) slope = sph::components_to_write<D>(particles, field::bed_slope);
     double* factor = particles.data(field::pressure_factor);
-    const double* divergence = settings.earth_pressure ? particles.data(field::divergence) : nullptr;
+    const double* earth_pressure = settings.earth_pressure ? particles.data(field::earth_pressure) : nullptr;
+    const double stiffness = settings.earth_pressure ? settings.earth_pressure->stiffness() : 0;
     const bool fitted = settings.form == Form::bed_fitted;
     double* level = settings.gradient == Gradient::level ? particles.data(field::surface_level) : nullptr;
     double* apparent = fitted ? particles.data(field::apparent_gravity) : nullptr;
@@ -58,10 +55,10 @@ void meet(ParticleSet& particles, const Terrain& terrain, const Settings& settin
         // Without the pull of the bed's curvature: where a fast flow leaves a bump, columns that do not press
         // on the bed would not push each other apart either, and heap up in a point.
         const double along_normal = settings.gravity * tilt.cosine;
-        const double lateral_gravity =
-            lateral(settings, divergence ? divergence[i] : 0) * along_normal * tilt.cosine;
-        wave_speed[i] = std::sqrt(lateral_gravity * height[i]);
-        factor[i] = level ? 0 : half * lateral_gravity;
+        const double in_plan = along_normal * tilt.cosine,
+                     coefficient = earth_pressure ? earth_pressure[i] : 1;
+        wave_speed[i] = std::sqrt((coefficient + 0.5 * stiffness) * in_plan * height[i]);
+        factor[i] = level ? 0 : half * coefficient * in_plan;
         if (level) level[i] = ground.elevation + depth[i];
     }
 }
@@ -84,6 +81,23 @@ void slide(ParticleSet& particles, const Settings& settings) {
     }
 }
 
+/// After meet(): what of the pressure within a phase the other one makes. Solid, (1 - w) h_s h/2 and w
+/// h_s^2/2; water, h_w^2/2 + h_w h_s: its height over the ground counts, not that over the solid.
+void meet_other_phase(ParticleSet& particles, const TwoPhase& phases) {
+    const double *height = particles.data(field::column_height), *other = particles.data(field::other_height),
+                 *is_water = particles.data(field::is_water);
+    double *factor = particles.data(field::pressure_factor), *wave_speed = particles.data(field::wave_speed),
+           *gravity = particles.data(field::lateral_gravity);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const double ratio = other[i] / height[i];
+        gravity[i] = wave_speed[i] * wave_speed[i] / height[i];
+        const double greater = is_water[i] != 0 ? 1 + 2 * ratio : 1 + (1 - phases.buoyancy()) * ratio;
+        factor[i] *= greater;
+        // The fastest wave is that of both together; from column to column only the pressure within a phase acts.
+        wave_speed[i] *= std::sqrt(std::max(greater, 1 + ratio));
+    }
+}
+
 }  // namespace
 
 void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& settings) {
@@ -91,6 +105,14 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
         meet<1>(particles, terrain, settings);
     else
         meet<2>(particles, terrain, settings);
+    if (settings.two_phase) meet_other_phase(particles, *settings.two_phase);
+}
+
+void strain_earth_pressure(ParticleSet& particles, const EarthPressure& law, double time_step) {
+    const double* divergence = particles.data(field::divergence);
+    const double softening = law.stiffness() * time_step;
+    for (double& coefficient : particles.own(field::earth_pressure))
+        coefficient = std::clamp(coefficient - softening * *divergence++, law.active, law.passive);
 }
 
 void slide_on_bed(ParticleSet& particles, const Settings& settings) {

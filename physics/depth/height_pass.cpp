@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "domain/depth_fields.hpp"
+#include "domain/two_phase_fields.hpp"
 #include "physics/depth/kernel.hpp"
 #include "physics/depth/passes.hpp"
 #include "physics/sph/pair_records.hpp"
@@ -15,7 +16,10 @@ using sph::components;
 
 constexpr double least_change = 0.8, greatest_change = 1.25;  // of the smoothing length in a step
 
-template <int D, bool with_divergence>
+/// What is found beside the height.
+enum class Beside : std::uint8_t { nothing, divergence, other_phase };
+
+template <int D, Beside beside>
 class HeightPass {
   public:
     HeightPass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings)
@@ -29,6 +33,12 @@ class HeightPass {
           records_(particles, table, which) {
         records_.copy(0, components<D>(particles, field::position));
         records_.copy(place_volume, components<1>(particles, field::volume));
+        if constexpr (of_phases) {
+            other_height_ = particles.data(field::other_height);
+            other_cover_ = particles.data(field::other_cover);
+            records_.copy(place_phase, components<1>(particles, field::is_water));
+            records_.copy(place_s, components<1>(particles, field::smoothing_length));
+        }
         if constexpr (with_divergence) {
             divergence_ = particles.data(field::divergence);
             records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));
@@ -46,26 +56,39 @@ class HeightPass {
     }
 
   private:
-    static constexpr std::size_t place_volume = D, place_velocity = D + 1,
-                                 record_size = with_divergence ? 2 * D + 1 : D + 1;
+    static constexpr bool with_divergence = beside == Beside::divergence,
+                          of_phases = beside == Beside::other_phase;
+    static constexpr std::size_t place_volume = D, place_velocity = D + 1, place_phase = D + 1,
+                                 place_s = D + 2,
+                                 record_size = with_divergence ? 2 * D + 1
+                                               : of_phases     ? D + 3
+                                                               : D + 1;
     static constexpr auto as_copied = [](const sph::Neighbours&, auto&) {};
     struct Sums {
         double number, height;                    ///< sum W [1/m^D], sum V W [m]
         double number_dilation, height_dilation;  ///< the same of r dW/dr, negative
         double divergence;                        ///< sum (v_j - v_i) grad W
+        double other_height, other_cover;         ///< the height and sum A W of the other phase
     };
 
     [[gnu::flatten]] Sums sum_over_partners(std::uint32_t i) {
         const auto own = sph::broadcast(records_[i]);
         const Lanes inverse_s = 1 / smoothing_length_[i];
         const std::span<const std::uint32_t> partners = partners_.index();
-        LaneSum number, height, number_dilation, height_dilation, divergence;
+        LaneSum number, height, number_dilation, height_dilation, divergence, other_height, other_cover;
         for (std::size_t k = 0; k < partners.size(); k += lane_count) {
             const auto other = records_.gather(partners.data() + k);
             sph::Vector<Lanes, D> r;
             for (std::size_t d = 0; d < D; ++d) r[d] = own[d] - other[d];
             const Lanes r2 = sph::dot(r, r);
-            const LaneMask real = first_lanes(partners.size() - k);
+            LaneMask real = first_lanes(partners.size() - k);
+            if constexpr (of_phases) {
+                const LaneMask same = own[place_phase] == other[place_phase];
+                const Lanes unlike = select(real && !same, kernel_.value(r2, inverse_s), Lanes(0.0));
+                other_height.add(k, other[place_volume] * unlike);
+                other_cover.add(k, area_of<D>(other[place_s], settings_.eta) * unlike);
+                real = real && same;
+            }
             const Lanes slope = select(real, kernel_.factor(r2, inverse_s), Lanes(0.0)),
                         value = select(real, kernel_.value(r2, inverse_s), Lanes(0.0));
             number.add(k, value);
@@ -79,8 +102,10 @@ class HeightPass {
                 divergence.add(k, slope * closing);
             }
         }
-        return {factor_ * number.total(), factor_ * height.total(), factor_ * number_dilation.total(),
-                factor_ * height_dilation.total(), factor_ * divergence.total()};
+        return {factor_ * number.total(),          factor_ * height.total(),
+                factor_ * number_dilation.total(), factor_ * height_dilation.total(),
+                factor_ * divergence.total(),      factor_ * other_height.total(),
+                factor_ * other_cover.total()};
     }
 
     /// Newton's step for sum W(r, s) = (eta/s)^D. By the scaling of kernels s dW/ds = -(D W + r dW/dr).
@@ -100,6 +125,10 @@ class HeightPass {
         const double dilation = std::min(sums.number_dilation, -least_grad_h * D * number);
         grad_h_[i] = found < most ? stretched / dilation : 0;
         if constexpr (with_divergence) divergence_[i] = sums.divergence / number;
+        if constexpr (of_phases) {
+            other_height_[i] = sums.other_height / std::max(sums.other_cover, full_cover);
+            other_cover_[i] = sums.other_cover;
+        }
     }
     double own_share(double s) const { return factor_ * kernel_.value(0.0, 1 / s); }
 
@@ -108,14 +137,15 @@ class HeightPass {
     const Settings settings_;
     const double factor_;
     const double* smoothing_length_;
-    double *next_, *height_, *grad_h_, *divergence_ = nullptr;
+    double *next_, *height_, *grad_h_, *divergence_ = nullptr, *other_height_ = nullptr,
+                                       *other_cover_ = nullptr;
     Partners<D> partners_;
     sph::PairRecords<record_size> records_;
 };
 
-template <int D, bool with_divergence>
+template <int D, Beside beside>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
-    HeightPass<D, with_divergence> pass(particles, table, which, settings);
+    HeightPass<D, beside> pass(particles, table, which, settings);
     table.for_each_own(which, [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
         pass.visit(cell, runs);
     });
@@ -124,9 +154,11 @@ void run(ParticleSet& particles, const CellTable& table, Cells which, const Sett
 template <int D>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
     if (settings.earth_pressure)
-        run<D, true>(particles, table, which, settings);
+        run<D, Beside::divergence>(particles, table, which, settings);
+    else if (settings.two_phase)
+        run<D, Beside::other_phase>(particles, table, which, settings);
     else
-        run<D, false>(particles, table, which, settings);
+        run<D, Beside::nothing>(particles, table, which, settings);
 }
 
 }  // namespace

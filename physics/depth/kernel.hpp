@@ -20,4 +20,14 @@ double lattice_factor(const Settings& settings) {
     return 1 / sum;
 }
 
+/// Area in plan that a column of this smoothing length stands for, its square of the lattice; length in 1D.
+template <int D, class Real>
+Real area_of(const Real& smoothing_length, double eta) {
+    const Real side = smoothing_length / eta;
+    return D == 1 ? side : side * side;
+}
+
+/// Cover of the other phase from which on a column is within it and not at its edge.
+inline constexpr double full_cover = 0.5;
+
 }  // namespace talus::depth

@@ -6,6 +6,7 @@
 
 #include "domain/depth_fields.hpp"
 #include "domain/pore_pressure_field.hpp"
+#include "domain/two_phase_fields.hpp"
 #include "physics/sph/pass_support.hpp"
 
 namespace talus::depth {
@@ -32,9 +33,14 @@ class Bed {
     }
     double gravity(std::size_t i) const {
         if (!apparent_) return settings_.gravity;
+        return normal_gravity(settings_, apparent_[i], cosine(i));
+    }
+    /// Of the angle between its normal and the vertical.
+    double cosine(std::size_t i) const {
+        if (!apparent_) return 1;
         std::array<double, D> slope;
         for (std::size_t d = 0; d < D; ++d) slope[d] = slope_[d][i];
-        return normal_gravity(settings_, apparent_[i], Tilt(slope).cosine);
+        return Tilt(slope).cosine;
     }
 
   private:
@@ -56,9 +62,19 @@ bool is_held(const std::array<const double*, D>& v, const std::array<const doubl
     return acceleration2 < rounding * gravity * (rounding * gravity);
 }
 
+/// Which columns a law of the bed acts on: of two phases one, or all.
+struct Bedded {
+    double density;                    ///< [kg/m3]
+    const double* is_water = nullptr;  ///< in all columns, if there are phases
+    const double* other_height = nullptr;
+    double of_water = 0;  ///< value of is_water in those that are meant
+
+    bool is_meant(std::size_t i) const { return !is_water || is_water[i] == of_water; }
+};
+
 template <int D, class Law>
-void advance(ParticleSet& particles, const Settings& settings, const Law& law, double time,
-             const Field<double>& to) {
+void advance(ParticleSet& particles, const Settings& settings, const Bedded& bedded, const Law& law,
+             double time, const Field<double>& to) {
     const auto v = sph::components<D>(particles, field::velocity),
                a = sph::components<D>(particles, field::acceleration);
     const auto moved = sph::components_to_write<D>(particles, to);
@@ -66,15 +82,22 @@ void advance(ParticleSet& particles, const Settings& settings, const Law& law, d
     const double* pore_pressure =
         particles.has(field::excess_pore_pressure) ? particles.data(field::excess_pore_pressure) : nullptr;
     const Bed<D> bed(particles, settings);
+    const auto pressure_in_pores = [&](std::size_t i) {
+        if (!bedded.is_water || bedded.of_water != 0) return pore_pressure ? pore_pressure[i] : 0.0;
+        const TwoPhase& phases = *settings.two_phase;
+        return phases.saturation(bedded.other_height[i] * bed.cosine(i) / depth[i]) * phases.water_density *
+               bed.gravity(i) * depth[i];
+    };
     for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (!bedded.is_meant(i)) continue;
         std::array<double, D> v_i;
         for (std::size_t d = 0; d < D; ++d) v_i[d] = v[d][i] + time * a[d][i];
         if (settings.balance && is_held<D>(v, a, i, settings.gravity)) v_i = {};
         if constexpr (!std::is_same_v<Law, Frictionless>) {
             const Column column{.depth = depth[i],
-                                .density = settings.density,
-                                .normal_stress = settings.density * bed.gravity(i) * depth[i],
-                                .pore_pressure = pore_pressure ? pore_pressure[i] : 0,
+                                .density = bedded.density,
+                                .normal_stress = bedded.density * bed.gravity(i) * depth[i],
+                                .pore_pressure = pressure_in_pores(i),
                                 .gravity = settings.gravity};
             const double before = bed.speed(i, v_i);
             const double kept = before > 0 ? law.speed_after(before, time, column) / before : 0;
@@ -84,29 +107,45 @@ void advance(ParticleSet& particles, const Settings& settings, const Law& law, d
     }
 }
 
-void advance(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time,
-             const Field<double>& to) {
+void advance(ParticleSet& particles, const Settings& settings, const Bedded& bedded,
+             const BasalFriction& friction, double time, const Field<double>& to) {
     std::visit(
         [&](const auto& law) {
             if (particles.dimension() == 1)
-                advance<1>(particles, settings, law, time, to);
+                advance<1>(particles, settings, bedded, law, time, to);
             else
-                advance<2>(particles, settings, law, time, to);
+                advance<2>(particles, settings, bedded, law, time, to);
         },
         friction);
 }
 
+void advance(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time,
+             const Field<double>& to) {
+    if (!settings.two_phase)
+        return advance(particles, settings, Bedded{settings.density}, friction, time, to);
+    const TwoPhase& phases = *settings.two_phase;
+    const double *is_water = particles.data(field::is_water), *other = particles.data(field::other_height);
+    advance(particles, settings, Bedded{phases.solid_density, is_water, other, 0}, friction, time, to);
+    advance(particles, settings, Bedded{phases.water_density, is_water, other, 1}, phases.water_friction,
+            time, to);
+}
+
 template <int D>
-void take_up(ParticleSet& particles, const Settings& settings, double time) {
-    const auto v = sph::components_to_write<D>(particles, field::velocity);
+void drift_and_take_up(ParticleSet& particles, const Settings& settings, double time) {
+    const auto x = sph::components_to_write<D>(particles, field::position),
+               v = sph::components_to_write<D>(particles, field::velocity);
     double* volume = particles.data(field::volume);
     const Bed<D> bed(particles, settings);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         std::array<double, D> v_i;
         for (std::size_t d = 0; d < D; ++d) v_i[d] = v[d][i];
-        const double growth = std::exp(settings.entrainment * bed.speed(i, v_i) * time);
-        volume[i] *= growth;
-        for (std::size_t d = 0; d < D; ++d) v[d][i] /= growth;
+        const double taken = settings.entrainment * bed.speed(i, v_i) * time;
+        const double way = taken > 0 ? std::log1p(taken) / taken : 1;  // in terms of the first velocity's
+        volume[i] *= 1 + taken;
+        for (std::size_t d = 0; d < D; ++d) {
+            x[d][i] += v_i[d] * time * way;
+            v[d][i] = v_i[d] / (1 + taken);
+        }
     }
 }
 
@@ -120,11 +159,13 @@ void predict(ParticleSet& particles, const Settings& settings, const BasalFricti
     advance(particles, settings, friction, time, field::predicted_velocity);
 }
 
-void entrain(ParticleSet& particles, const Settings& settings, double time) {
-    if (particles.dimension() == 1)
-        take_up<1>(particles, settings, time);
+void drift(ParticleSet& particles, const Settings& settings, double time) {
+    if (settings.entrainment == 0)
+        sph::drift(particles, time);
+    else if (particles.dimension() == 1)
+        drift_and_take_up<1>(particles, settings, time);
     else
-        take_up<2>(particles, settings, time);
+        drift_and_take_up<2>(particles, settings, time);
 }
 
 void fade_balance(ParticleSet& particles, double time) {

@@ -38,9 +38,10 @@ void kick(ParticleSet& particles, const Settings& settings, const BasalFriction&
 /// The same into predicted_velocity.
 void predict(ParticleSet& particles, const Settings& settings, const BasalFriction& friction, double time);
 
-/// Volume taken up from the bed on the way of a drift that was just done, and the velocity that is left: the
-/// momentum stays. O. Hungr, Can. Geotech. J. 32 (1995) 610; E_s is his growth rate.
-void entrain(ParticleSet& particles, const Settings& settings, double time);
+/// Positions: x += v time. With entrainment a particle takes up volume on its way s, V = V_0 exp(E_s s), and
+/// its momentum is shared by it: the way is then ln(1 + E_s v time)/E_s, without error for any time. O.
+/// Hungr, Can. Geotech. J. 32 (1995) 610.
+void drift(ParticleSet& particles, const Settings& settings, double time);
 
 /// Lets still_acceleration fade along the way, by the factor e in a smoothing length: it belongs to the
 /// columns as they lay over the bed at the start.

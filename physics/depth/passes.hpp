@@ -17,6 +17,9 @@ namespace talus::depth {
 /// (predicted_velocity) of partners.
 void height_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
 
+/// Moves the coefficients of earth pressure on by the strain of a time step. Reads divergence.
+void strain_earth_pressure(ParticleSet& particles, const EarthPressure& law, double time_step);
+
 /// What follows from a column and the bed under it: takes over next_smoothing_length, sets depth, wave_speed,
 /// and pressure_factor, and those of bed_slope and apparent_gravity that the set has.
 void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& settings);
@@ -27,6 +30,14 @@ void meet_bed(ParticleSet& particles, const Terrain& terrain, const Settings& se
 /// and grad_h_volume of partners.
 void pressure_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                    sph::PassCount& count);
+
+/// The mean velocity of the water around a column less that of the solid, and what drag moves from one to the
+/// other in `time` [s]. Reads position, volume, is_water, predicted_velocity of partners.
+void relative_velocity_pass(ParticleSet& particles, const CellTable& table, Cells which,
+                            const Settings& settings, double time);
+/// Changes velocity by the drag between the phases; the sum of momenta stays. Reads position, volume,
+/// smoothing_length, is_water, relative_velocity, exchange of partners.
+void drag_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
 
 /// Adds gravity along the gradient of the free surface; for Gradient::level, whose pressure_factor is zero.
 /// Reads position, volume, smoothing_length, depth, surface_level of partners.

@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "physics/depth/two_phase.hpp"
+
 namespace talus::depth {
 
 /// How the equations meet a bed that is not level.
@@ -17,10 +19,18 @@ enum class Gradient : std::uint8_t {
            ///< its level alone; neither momentum nor energy are kept pair by pair
 };
 
-/// Coefficients of lateral earth pressure: S. B. Savage, K. Hutter, J. Fluid Mech. 199 (1989) 177.
+/// Coefficients of lateral earth pressure: S. B. Savage, K. Hutter, J. Fluid Mech. 199 (1989) 177. Between
+/// the limits the coefficient K follows the strain, as that of an elastic body: K = active at the start, and
+///
+///     dK/dt = - stiffness div v,   active <= K <= passive.
+///
+/// A coefficient that jumps where div v changes its sign lets rounding errors throw columns about that rest.
 struct EarthPressure {
-    double active;   ///< where the flow spreads [1]
-    double passive;  ///< where it is compressed [1]
+    double active;                   ///< where the flow spreads [1]
+    double passive;                  ///< where it is compressed [1]
+    double mobilizing_strain = 0.2;  ///< that takes K from one limit to the other [1]
+
+    double stiffness() const { return (passive - active) / mobilizing_strain; }
 };
 
 /// Choices and parameters of the depth-integrated model.
@@ -35,6 +45,7 @@ struct Settings {
     double viscosity = 1;                 ///< of approaching columns, in terms of a Riemann problem's [1]
     bool curvature = true;                ///< of the bed, in the pressure on it; form = bed_fitted only
     std::optional<EarthPressure> earth_pressure{};  ///< none: hydrostatic
+    std::optional<TwoPhase> two_phase{};            ///< none: one material
     double entrainment = 0;                         ///< E_s: growth of the volume for each metre of way [1/m]
     double courant = 0.4;                           ///< C in dt = C smoothing length / signal speed
 

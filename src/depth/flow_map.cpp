@@ -19,10 +19,10 @@ namespace {
 /// The columns of a rank as the map sees them.
 class Columns {
   public:
-    explicit Columns(const DepthSimulation& simulation) : particles_(simulation.particles()) {
+    explicit Columns(const DepthSimulation& simulation)
+        : simulation_(simulation), particles_(simulation.particles()) {
         fitted_ = simulation.setup().settings.form == depth::Form::bed_fitted;
         eta_ = simulation.setup().settings.eta;
-        depth_ = particles_.data(field::depth);
         volume_ = particles_.data(field::volume);
         for (int a = 0; a < 2; ++a) {
             const auto axis = static_cast<std::size_t>(a);
@@ -34,7 +34,7 @@ class Columns {
 
     std::size_t size() const { return particles_.size(); }
     std::array<double, 2> place(std::size_t i) const { return {x_[0][i], x_[1][i]}; }
-    double vertical_depth(std::size_t i) const { return depth_[i] / cosine(i); }
+    double vertical_depth(std::size_t i) const { return simulation_.whole_depth(i) / cosine(i); }
     /// In plan: of a square whose side is the distance of columns.
     double area(std::size_t i) const {
         const double side = smoothing_length(i) / eta_;
@@ -44,7 +44,7 @@ class Columns {
     double smoothing_length(std::size_t i) const { return particles_.data(field::smoothing_length)[i]; }
     MapColumn column(std::size_t i) const {
         const double rise = fitted_ ? slope_[0][i] * v_[0][i] + slope_[1][i] * v_[1][i] : 0;
-        return {place(i), area(i), depth_[i],
+        return {place(i), area(i), simulation_.whole_depth(i),
                 std::sqrt(v_[0][i] * v_[0][i] + v_[1][i] * v_[1][i] + rise * rise)};
     }
 
@@ -53,10 +53,11 @@ class Columns {
         return fitted_ ? depth::Tilt(std::array<double, 2>{slope_[0][i], slope_[1][i]}).cosine : 1;
     }
 
+    const DepthSimulation& simulation_;
     const ParticleSet& particles_;
     bool fitted_;
     double eta_;
-    const double *depth_, *volume_;
+    const double* volume_;
     std::array<const double*, 2> x_{}, v_{}, slope_{};
 };
 

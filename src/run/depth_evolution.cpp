@@ -6,6 +6,7 @@
 
 #include "domain/depth_fields.hpp"
 #include "domain/pore_pressure_field.hpp"
+#include "domain/two_phase_fields.hpp"
 #include "io/checkpoint.hpp"
 #include "src/run/scene_checks.hpp"
 
@@ -89,9 +90,9 @@ std::vector<std::string> DepthEvolution::news() {
 
 std::vector<SnapshotField> DepthEvolution::snapshot_fields() const {
     std::vector<SnapshotField> fields;
-    for (const FieldInfo* info :
-         std::initializer_list<const FieldInfo*>{&field::velocity, &field::depth, &field::volume,
-                                                 &field::smoothing_length, &field::excess_pore_pressure})
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::depth, &field::volume, &field::smoothing_length,
+             &field::excess_pore_pressure, &field::is_water, &field::other_height})
         if (simulation_->particles().has(*info)) fields.push_back({.field = info});
     return fields;
 }
@@ -115,6 +116,9 @@ std::vector<CsvColumn> DepthEvolution::diagnostics_columns() const {
                                    {"stopped", "1"},
                                    {"outflow_particles", "1"},
                                    {"outflow_volume", "m3"}};
+    if (setup_.simulation.settings.two_phase)
+        columns.insert(columns.end(),
+                       {{"water_volume", "m3"}, {"water_centre_x", "m"}, {"water_centre_y", "m"}});
     for (const Gauge& gauge : setup_.gauges) {
         columns.push_back({"depth_" + gauge.name, "m"});
         columns.push_back({"level_" + gauge.name, "m"});
@@ -130,6 +134,8 @@ Diagnostics DepthEvolution::diagnostics() {
          t.least_place[1], t.greatest_place[1], t.greatest_speed, t.greatest_depth, t.stopped,
          static_cast<double>(simulation_->outflow().count()), simulation_->outflow().volume()},
         0};
+    if (setup_.simulation.settings.two_phase)
+        found.row.insert(found.row.end(), {t.water_volume, t.water_centre[0], t.water_centre[1]});
     if (setup_.gauges.empty()) return found;
     for (const GaugeReading& reading : read_gauges(*simulation_, setup_.gauges)) {
         found.row.push_back(reading.depth);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "domain/depth_fields.hpp"
+#include "domain/two_phase_fields.hpp"
 #include "src/setup/friction_reader.hpp"
 #include "src/setup/release_reader.hpp"
 #include "src/setup/results_reader.hpp"
@@ -35,12 +36,26 @@ std::optional<depth::EarthPressure> read_earth_pressure(const Section& table, do
         return {};
     }
     return depth::EarthPressure{.active = 2 * (1 - std::sqrt(root2)) / cos2 - 1,
-                                .passive = 2 * (1 + std::sqrt(root2)) / cos2 - 1};
+                                .passive = 2 * (1 + std::sqrt(root2)) / cos2 - 1,
+                                .mobilizing_strain = table.number("mobilizing_strain", "1", 0.2, positive)};
 }
 
 bool any_level(const Section& root) {
     const std::vector<Section> releases = root.sections("release");
     return std::any_of(releases.begin(), releases.end(), [](const Section& one) { return one.has("level"); });
+}
+
+/// What is not known of solid and water together.
+void refuse_with_two_phase(const Section& root, const depth::Settings& settings) {
+    const Section table = root.section("depth");
+    const auto refuse = [](const Section& where, const char* key, bool is_asked) {
+        if (is_asked) where.error(key, "is not available together with [two_phase]");
+    };
+    refuse(table, "gradient", settings.gradient == depth::Gradient::level);
+    refuse(table, "internal_friction_angle", settings.earth_pressure.has_value());
+    refuse(table, "entrainment", settings.entrainment > 0);
+    refuse(table, "balance", settings.balance);
+    refuse(root.section("pore_pressure"), "", root.has("pore_pressure"));
 }
 
 depth::Settings read_settings(const Section& root, int dimension, const DepthSetup& setup) {
@@ -50,19 +65,28 @@ depth::Settings read_settings(const Section& root, int dimension, const DepthSet
     settings.form = fitted ? depth::Form::bed_fitted : depth::Form::cartesian;
     const bool by_level = table.choice("gradient", {"potential", "level"}, "potential") == "level";
     settings.gravity = table.number("gravity", "m s-2", 9.81, positive);
-    settings.density = table.number("density", "kg m-3", 1000.0, positive);
-    settings.eta = table.number("eta", "1", dimension == 1 ? 1.6 : 1.3, {1, 4});
+    settings.two_phase = read_two_phase(root);
+    if (settings.two_phase)
+        settings.density = settings.two_phase->solid_density;
+    else
+        settings.density = table.number("density", "kg m-3", 1000.0, positive);
+    // Columns of a phase pass over those of the other: the sum over these must not depend on where they
+    // stand.
+    const double narrow = dimension == 1 ? 1.6 : 1.3, wide = dimension == 1 ? 2.4 : 2;
+    settings.eta = table.number("eta", "1", settings.two_phase ? wide : narrow, {1, 4});
     settings.viscosity = table.number("viscosity", "1", by_level ? 2.0 : 1.0, not_negative);
     settings.courant = table.number("courant", "1", 0.4, {0, 1, true});
     settings.entrainment = table.number("entrainment", "m-1", 0.0, not_negative);
     if (fitted) settings.curvature = table.flag("curvature", true);
-    if (!fitted && any_level(root)) settings.balance = table.flag("balance", !by_level);
+    if (!fitted && any_level(root))
+        settings.balance = table.flag("balance", !by_level && !settings.two_phase);
     settings.earth_pressure = read_earth_pressure(table, friction_coefficient(setup.friction));
     if (by_level) {
         settings.gradient = depth::Gradient::level;
         if (fitted) table.error("gradient", "level needs form = \"cartesian\"");
         if (settings.earth_pressure) table.error("internal_friction_angle", "needs gradient = \"potential\"");
     }
+    if (settings.two_phase) refuse_with_two_phase(root, settings);
     return settings;
 }
 
@@ -107,9 +131,15 @@ void read_releases(const Communicator& comm, const Scene& scene, const SceneTerr
     }
 }
 
+/// Of what a release is made, where there are two phases.
+struct Phase {
+    double share = 1;  ///< of the volume
+    bool is_water = false;
+};
+
 /// Appends this rank's share of some columns.
 void append_share(const Communicator& comm, const std::vector<ReleasedColumn>& columns, const Point& velocity,
-                  std::uint64_t first_id, ParticleSet& particles) {
+                  std::uint64_t first_id, ParticleSet& particles, Phase phase = {}) {
     const auto ranks = static_cast<std::uint64_t>(comm.size()),
                rank = static_cast<std::uint64_t>(comm.rank());
     const std::uint64_t count = columns.size(), begin = count * rank / ranks,
@@ -124,8 +154,9 @@ void append_share(const Communicator& comm, const std::vector<ReleasedColumn>& c
             particles.data(field::position, a)[i] = column.place[static_cast<std::size_t>(a)];
             particles.data(field::velocity, a)[i] = velocity[static_cast<std::size_t>(a)];
         }
-        particles.data(field::volume)[i] = column.volume;
-        particles.data(field::depth)[i] = column.depth;
+        particles.data(field::volume)[i] = phase.share * column.volume;
+        particles.data(field::depth)[i] = phase.share * column.depth;
+        if (particles.has(field::is_water)) particles.data(field::is_water)[i] = phase.is_water ? 1 : 0;
         particles.data(field::smoothing_length)[i] = column.smoothing_length;
     }
 }
@@ -206,9 +237,15 @@ ParticleSet make_columns(const Communicator& comm, const DepthScene& scene) {
             columns_of(release, *scene.simulation.terrain, scene.simulation.settings, scene.simulation.box);
         if (scene.simulation.settings.balance && release.level)
             append_lake(comm, scene.simulation, release, columns, first_id, particles);
-        else
-            append_share(comm, columns.released, release.velocity, first_id, particles);
-        first_id += columns.released.size();
+        else if (release.solid_fraction > 0)
+            append_share(comm, columns.released, release.velocity, first_id, particles,
+                         {release.solid_fraction, false});
+        if (release.solid_fraction > 0) first_id += columns.released.size();
+        if (release.solid_fraction < 1) {  // in the same places
+            append_share(comm, columns.released, release.velocity, first_id, particles,
+                         {1 - release.solid_fraction, true});
+            first_id += columns.released.size();
+        }
     }
     return particles;
 }

@@ -77,6 +77,29 @@ double friction_coefficient(const depth::BasalFriction& friction) {
         friction);
 }
 
+std::optional<depth::TwoPhase> read_two_phase(const Section& root) {
+    const Section table = root.section("two_phase");
+    if (!table.exists()) return {};
+    depth::TwoPhase phases;
+    phases.solid_density = table.number("solid_density", "kg m-3", 2700.0, positive);
+    phases.water_density = table.number("water_density", "kg m-3", 1000.0, positive);
+    if (phases.solid_density < phases.water_density)
+        table.error("solid_density", "is below that of the water; allowed: solid that sinks");
+    const std::string law = table.choice("drag", {"anderson_jackson", "darcy", "none"}, "anderson_jackson");
+    if (law == "none") phases.drag = depth::DragLaw::none;
+    if (law == "darcy") {
+        phases.drag = depth::DragLaw::darcy;
+        phases.speed = table.number("conductivity", "m s-1", {}, positive);
+    }
+    if (law == "anderson_jackson") {
+        phases.speed = table.number("settling_velocity", "m s-1", {}, positive);
+        phases.exponent = table.number("exponent", "1", 3.65, not_negative);
+    }
+    phases.porosity = table.number("porosity", "1", 0.4, {0, 0.99, true});
+    phases.water_friction = read_basal_friction(root.section("water_friction"));
+    return phases;
+}
+
 std::optional<PorePressure> read_pore_pressure(const Section& table) {
     if (!table.exists()) return {};
     PorePressure model{};

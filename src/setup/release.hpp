@@ -25,6 +25,7 @@ struct Release {
     bool parabolic = false;         ///< falls to zero at the edge of a ball or ellipsoid
     std::optional<double> level{};  ///< in place of a depth: elevation of a level surface [m]
     Point velocity{};               ///< in plan [m/s]
+    double solid_fraction = 1;      ///< of the volume, the rest is water: flows of two phases only
 };
 
 /// A column of a release, before it is a particle.

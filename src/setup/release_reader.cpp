@@ -146,6 +146,8 @@ std::vector<Release> read_release(const Section& table, const BodyContext& conte
     Release release;
     release.name = table.text("name", table.path());
     release.velocity = origin_default(table, "velocity", "m s-1", context.dimension);
+    if (context.scene.root().has("two_phase"))
+        release.solid_fraction = table.number("solid_fraction", "1", {}, {0, 1});
     if (is_drawn(table)) return read_drawn(table, context, terrain, release, first_spacing);
     release.shape = read_shape(table, 1, context);
     const bool round = std::holds_alternative<SphereShape>(release.shape) ||

@@ -52,6 +52,20 @@ class Depth(Case):
     def test_three_dimensions(self):
         self.check("dimension = 1", "dimension = 3", r"scene\.toml:1: dimension = 3")
 
+    def test_two_phases_need_a_solid_fraction(self):
+        self.check('[friction]', '[two_phase]\nsettling_velocity = 1\n[friction]', r"release\[0\]\.solid_fraction")
+
+    def test_two_phases_refuse_what_is_not_known_of_them(self):
+        fraction = "depth = 1\nsolid_fraction = 0.5"
+        scene = SCENE.replace("depth = 1", fraction).replace(
+            '[friction]', 'entrainment = 0.1\n[two_phase]\nsettling_velocity = 1\n[pore_pressure]\nconsolidation = 1\n[friction]')
+        done = talus("run", self.scene(scene), "--out", self.out, ranks=0)
+        self.assert_fails(done, 2, r"depth\.entrainment = .*not available together with \[two_phase\]", "pore_pressure.*not available")
+
+    def test_solid_that_floats(self):
+        self.check('[friction]', '[two_phase]\nsolid_density = 900\nsettling_velocity = 1\n[friction]',
+                   r"two_phase\.solid_density = 900 .*below that of the water")
+
     def test_no_release(self):
         done = talus("run", self.scene(SCENE[:SCENE.index("[[release]]")] + "[run]\nend_time = 1\n"), "--out", self.out,
                      ranks=0)

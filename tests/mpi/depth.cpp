@@ -70,6 +70,24 @@ DepthScene flooded_lake() {
     return scene;
 }
 
+/// Solid and water through each other, round a periodic side and off a mirror.
+DepthScene debris() {
+    DepthScene scene;
+    DepthSetup& setup = scene.simulation;
+    setup.box = {2, {-50, -20, 0}, {50, 20, 0}, {Boundary::reflecting, Boundary::periodic, Boundary::open}};
+    setup.terrain = bumpy_slope();
+    setup.friction = depth::Coulomb{.friction = 0.4};
+    setup.settings.form = depth::Form::bed_fitted;
+    setup.settings.eta = 2;
+    setup.settings.largest_smoothing_length = 12;
+    setup.settings.two_phase = depth::TwoPhase{.speed = 0.5};
+    setup.settings.two_phase->water_friction = depth::Manning{.roughness = 0.05};
+    scene.releases = {cap(25, 3)};
+    scene.releases.front().solid_fraction = 0.7;
+    scene.releases.front().velocity = {8, 3, 0};
+    return scene;
+}
+
 DepthScene break_1d() {
     DepthScene scene;
     DepthSetup& setup = scene.simulation;
@@ -144,10 +162,11 @@ TEST_P(DepthSameBits, AfterInterruption) {
 }
 
 std::string name_of(const testing::TestParamInfo<DepthScene (*)()>& scene) {
-    constexpr const char* names[] = {"Avalanche", "FloodedLake", "Break1D"};
+    constexpr const char* names[] = {"Avalanche", "FloodedLake", "Break1D", "Debris"};
     return names[scene.index];
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, DepthSameBits, testing::Values(avalanche, flooded_lake, break_1d), name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, DepthSameBits, testing::Values(avalanche, flooded_lake, break_1d, debris),
+                         name_of);
 
 // What is there at the end and what has left is what was released: nothing is taken up here.
 TEST(DepthVolume, IsThereOrHasLeft) {
