@@ -28,7 +28,8 @@ WaterTotals WaterSimulation::totals() const {
         const double m = particles_.data(field::mass)[i], rho = particles_.data(field::density)[i];
         double speed2 = 0, height = 0;
         for (int a = 0; a < particles_.dimension(); ++a) {
-            const double x = particles_.data(field::position, a)[i], v = particles_.data(field::velocity, a)[i];
+            const double x = particles_.data(field::position, a)[i],
+                         v = particles_.data(field::velocity, a)[i];
             sums[static_cast<std::size_t>(px + a)].add(m * v);
             speed2 += v * v;
             height -= settings.bearing[static_cast<std::size_t>(a)] * x;

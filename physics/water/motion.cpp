@@ -1,5 +1,6 @@
 #include "physics/water/motion.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -7,67 +8,58 @@
 
 namespace talus::water {
 
-namespace {
-
-/// Writes the state `time` ahead into fields that may be those of the state itself.
-void advance(ParticleSet& particles, double time, const Field<double>& to_velocity,
-             const Field<double>& to_density) {
-    const auto add = [&](const double* from, const double* rate, double* to) {
-        for (std::size_t i = 0; i < particles.size(); ++i) to[i] = from[i] + time * rate[i];
+void kick(ParticleSet& particles, double time) {
+    const auto add = [&](double* to, const double* rate) {
+        for (std::size_t i = 0; i < particles.size(); ++i) to[i] += time * rate[i];
     };
     for (int a = 0; a < particles.dimension(); ++a)
-        add(particles.data(field::velocity, a), particles.data(field::acceleration, a),
-            particles.data(to_velocity, a));
-    add(particles.data(field::density), particles.data(water_field::density_rate),
-        particles.data(to_density));
+        add(particles.data(field::velocity, a), particles.data(field::acceleration, a));
+    add(particles.data(field::density), particles.data(water_field::density_rate));
 }
 
-/// The least of some limits and whose it is.
-struct Least {
-    double value = std::numeric_limits<double>::infinity();
+namespace {
+
+/// The greatest of some values and whose it is.
+struct Greatest {
+    double value = 0;
     std::size_t at = 0;
-    void take(double limit, std::size_t i) {
-        if (!(limit < value)) return;
-        value = limit;
+    void take(double other, std::size_t i) {
+        if (!(other > value)) return;
+        value = other;
         at = i;
     }
 };
 
 }  // namespace
 
-void kick(ParticleSet& particles, double time) { advance(particles, time, field::velocity, field::density); }
-
-void predict(ParticleSet& particles, double time) {
-    advance(particles, time, field::predicted_velocity, field::predicted_density);
-}
-
 sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings) {
-    if (particles.size() == 0) return {std::numeric_limits<double>::infinity(), 0, "no particles"};
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (particles.size() == 0) return {infinity, 0, "no particles"};
     constexpr double viscous_share = 0.125, accelerated_share = 0.25;
     const double h = settings.smoothing_length;
-    const double *density = particles.data(field::predicted_density),
-                 *rate = particles.data(water_field::density_rate);
-    const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed;
-    Least sound, acceleration;
+    const double *density = particles.data(field::density), *rate = particles.data(water_field::density_rate);
+    const int dimension = particles.dimension();
+    std::array<const double*, 3> a{};
+    for (int d = 0; d < 3; ++d)
+        a[static_cast<std::size_t>(d)] = particles.data(field::acceleration, std::min(d, dimension - 1));
+    Greatest speed, acceleration2;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        double a2 = 0;
-        for (int d = 0; d < particles.dimension(); ++d) {
-            const double a = particles.data(field::acceleration, d)[i];
-            a2 += a * a;
-        }
-        const double speed =
-            settings.state.sound_speed_at(density[i]) + damping + h * std::abs(rate[i]) / density[i];
-        sound.take(settings.courant * h / speed, i);
-        if (a2 > 0) acceleration.take(accelerated_share * std::sqrt(h / std::sqrt(a2)), i);
+        const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
+        acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
+        speed.take(settings.state.sound_speed_at(density[i]) + h * std::abs(rate[i]) / density[i], i);
     }
+    const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed,
+                 sound = settings.courant * h / (speed.value + damping),
+                 accelerated = acceleration2.value > 0
+                                   ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
+                                   : infinity,
+                 viscous = settings.viscosity > 0
+                               ? viscous_share * h * h * settings.state.reference_density / settings.viscosity
+                               : infinity;
     const std::uint64_t* id = particles.data(field::id);
-    const double viscous =
-        settings.viscosity > 0
-            ? viscous_share * h * h * settings.state.reference_density / settings.viscosity
-            : std::numeric_limits<double>::infinity();
-    if (viscous < sound.value && viscous < acceleration.value) return {viscous, id[0], "viscosity"};
-    if (sound.value < acceleration.value) return {sound.value, id[sound.at], "sound"};
-    return {acceleration.value, id[acceleration.at], "acceleration"};
+    if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
+    if (sound < accelerated) return {sound, id[speed.at], "sound"};
+    return {accelerated, id[acceleration2.at], "acceleration"};
 }
 
 }  // namespace talus::water

@@ -31,7 +31,7 @@ void read_water(const Section& table, WaterScene& scene) {
         scene.greatest_speed = table.number("greatest_speed", "m/s", {}, positive);
     settings.state.sound_speed =
         table.number("sound_speed", "m/s", sound_over_speed * scene.greatest_speed, positive);
-    settings.state.exponent = table.number("exponent", "1", 7.0, {1, 20, true});
+    settings.state.exponent = static_cast<int>(table.integer("exponent", 7, 2, 20));
     settings.state.background_pressure = table.number("background_pressure", "Pa", 0.0, not_negative);
     settings.viscosity = table.number("viscosity", "Pa s", 0.0, not_negative);
     settings.artificial_viscosity = table.number("artificial_viscosity", "1", 0.0, {0, 10});
@@ -81,12 +81,14 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
         constexpr double alike = 0.1;
         if (water.spacing == 0 && !setup.walls[b]) water.spacing = spacing(b);
         if (water.spacing > 0 && std::abs(spacing(b) / water.spacing - 1) > alike)
-            tables[b].error("spacing", fmt::format("particles are {:.4g} m apart, those of the water before {:.4g} m; "
-                                                   "allowed: the same within a tenth",
-                                                   spacing(b), water.spacing));
+            tables[b].error("spacing",
+                            fmt::format("particles are {:.4g} m apart, those of the water before {:.4g} m; "
+                                        "allowed: the same within a tenth",
+                                        spacing(b), water.spacing));
     }
     if (water.spacing == 0 && !scene.faulty()) root.error("body", "there is no water: all bodies are walls");
-    if (std::none_of(setup.walls.begin(), setup.walls.end(), [](const auto& wall) { return wall.has_value(); }))
+    if (std::none_of(setup.walls.begin(), setup.walls.end(),
+                     [](const auto& wall) { return wall.has_value(); }))
         setup.walls.clear();
 }
 
