@@ -8,6 +8,7 @@
 #include "src/run/grain_evolution.hpp"
 #include "src/run/soil_evolution.hpp"
 #include "src/run/sph_evolution.hpp"
+#include "src/run/water_evolution.hpp"
 
 namespace talus {
 
@@ -25,6 +26,7 @@ constexpr std::array all_families = {
     Family{is_depth_scene, read<DepthEvolution>, check_depth_scene},
     Family{is_grain_scene, read<GrainEvolution>, check_grain_scene},
     Family{is_soil_scene, read<SoilEvolution>, check_soil_scene},
+    Family{is_water_scene, read<WaterEvolution>, check_water_scene},
     Family{any_scene, read<SphEvolution>, check_sph_scene},
 };
 

@@ -27,4 +27,7 @@ int check_depth_scene(const Communicator& comm, const Scene& scene);
 /// The same of soil. Collective.
 int check_soil_scene(const Communicator& comm, const Scene& scene);
 
+/// The same of water. Collective.
+int check_water_scene(const Communicator& comm, const Scene& scene);
+
 }  // namespace talus

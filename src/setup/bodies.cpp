@@ -126,13 +126,16 @@ void put_particle(ParticleSet& particles, std::size_t i, const NewParticle& made
     }
     particles.data(field::mass)[i] = body.density * census.particle_volume;
     const double relative = relative_density(body, census, made.x);
-    particles.data(field::internal_energy)[i] = body.internal_energy * (body.hydrostatic ? relative : 1);
-    // A lattice is fitted to a box; other shapes cut it, and keep its spacing.
-    const bool fitted = body.cell.fits_boxes && std::holds_alternative<BoxShape>(body.shape);
-    particles.data(field::smoothing_length)[i] =
-        eta * (fitted ? std::pow(census.particle_volume, 1.0 / dimension) : body.spacing) /
-        std::pow(relative, 1.0 / dimension);
     particles.data(field::body)[i] = made.body;
+    if (particles.has(field::internal_energy))
+        particles.data(field::internal_energy)[i] = body.internal_energy * (body.hydrostatic ? relative : 1);
+    if (particles.has(field::smoothing_length)) {
+        // A lattice is fitted to a box; other shapes cut it, and keep its spacing.
+        const bool fitted = body.cell.fits_boxes && std::holds_alternative<BoxShape>(body.shape);
+        particles.data(field::smoothing_length)[i] =
+            eta * (fitted ? std::pow(census.particle_volume, 1.0 / dimension) : body.spacing) /
+            std::pow(relative, 1.0 / dimension);
+    }
     if (particles.has(field::density)) particles.data(field::density)[i] = body.density * relative;
     if (particles.has(field::damage)) particles.data(field::damage)[i] = body.damage;
 }

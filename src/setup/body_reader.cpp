@@ -153,11 +153,11 @@ void balance(const Section& table, const Material& material, double gravitationa
 
 }  // namespace
 
-Body read_body(const Section& table, const Material& material, const BodyContext& context) {
+Body read_body_form(const Section& table, double density, const BodyContext& context) {
     const int dimension = context.dimension;
     Body body;
     body.name = table.text("name", table.path());
-    body.density = table.number("density", "kg/m3", material.reference_density, positive);
+    body.density = table.number("density", "kg/m3", density, positive);
     body.shape = read_shape(table, body.density, context);
     body.cell = read_packing(table, context);
     body.spacing = read_spacing(table, body, context);
@@ -170,7 +170,12 @@ Body read_body(const Section& table, const Material& material, const BodyContext
     }
     body.spin = read_spin(table, dimension);
     body.velocity_field = read_velocity_field(table.section("velocity_field"), dimension);
-    body.profile = read_profile(table, body, material, dimension);
+    return body;
+}
+
+Body read_body(const Section& table, const Material& material, const BodyContext& context) {
+    Body body = read_body_form(table, material.reference_density, context);
+    body.profile = read_profile(table, body, material, context.dimension);
     if (body.profile == DensityProfile::polytrope_1 && !table.has("internal_energy"))
         balance(table, material, context.gravitational_constant, body);
     else

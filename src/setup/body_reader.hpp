@@ -4,6 +4,10 @@
 
 namespace talus {
 
+/// What a body's table says of its form: shape, resolution and motion at the start. `density`: by default.
+/// Faults are recorded in the scene. Collective.
+Body read_body_form(const Section& table, double density, const BodyContext& context);
+
 /// A body's table: shape, resolution and state at the start. Faults are recorded in the scene. Collective.
 Body read_body(const Section& table, const Material& material, const BodyContext& context);
 

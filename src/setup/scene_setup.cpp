@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/setup/body_checks.hpp"
 #include "src/setup/body_reader.hpp"
 #include "src/setup/body_wall_reader.hpp"
 #include "src/setup/geostatic.hpp"
@@ -118,51 +119,6 @@ std::optional<LatePhase> read_late_phase(const Section& root, const Setup& simul
                      .stiffness = table.number("stiffness", "1", 0.01, {0, 1, true})};
 }
 
-void refuse_outside(const Section& table, const Body& body, const Box& box) {
-    const BoxShape around = bounds(body.shape, box.dimension);
-    for (int axis = 0; axis < box.dimension; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        if (box.boundary[a] != Boundary::open &&
-            (around.lower[a] < box.lower[a] || around.upper[a] > box.upper[a]))
-            table.error("shape",
-                        fmt::format("reaches out of the box along {}, where it is closed", "xyz"[a]));
-    }
-}
-
-/// Places are gone through one by one.
-void refuse_too_many_places(const std::vector<Section>& tables, const SceneSetup& setup) {
-    constexpr double most = 1e10;
-    const int dimension = setup.simulation.box.dimension;
-    for (std::size_t b = 0; b < tables.size(); ++b) {
-        const BoxShape around = bounds(setup.bodies[b].shape, dimension);
-        double places = 1;
-        for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
-            places *= (around.upper[a] - around.lower[a]) / setup.bodies[b].spacing;
-        if (!(places < most))
-            tables[b].error(
-                "", fmt::format("has {:.3g} places for particles {:.3g} m apart (allowed: below {:.0e})",
-                                places, setup.bodies[b].spacing, most));
-    }
-}
-
-void refuse_empty_bodies(const std::vector<Section>& tables, const SceneSetup& setup) {
-    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
-        if (setup.census[b].count == 0)
-            tables[b].error(
-                tables[b].has("particles") ? "particles" : "spacing",
-                fmt::format("body '{}' has no particles: none of its lattice, {:.4g} m apart, lies "
-                            "inside; make it finer or give the body a spacing of its own",
-                            setup.bodies[b].name, setup.bodies[b].spacing));
-}
-
-void refuse_overlaps(const std::vector<Section>& tables, const SceneSetup& setup) {
-    for (std::size_t b = 0; b < setup.bodies.size(); ++b)
-        for (std::size_t other = 0; other < b; ++other)
-            if (overlap(setup.bodies[other], setup.bodies[b], setup.simulation.box.dimension))
-                tables[b].error("", fmt::format("body '{}' overlaps body '{}'", setup.bodies[b].name,
-                                                setup.bodies[other].name));
-}
-
 void arrange_impact(const ImpactPlan& plan, const Section& table, SceneSetup& setup) {
     const PlannedImpact planned =
         plan_impact(plan, setup.bodies, setup.census, setup.simulation.box.dimension);
@@ -216,11 +172,11 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     refuse_too_many_places(tables, setup);
     if (scene.faulty()) return;
     setup.census = take_census(setup.bodies, box.dimension, setup.seed);
-    refuse_empty_bodies(tables, setup);
+    refuse_empty_bodies(tables, setup.bodies, setup.census);
     if (scene.faulty()) return;
     if (plan) arrange_impact(*plan, root.section("impact"), setup);
     for (std::size_t b = 0; b < tables.size(); ++b) refuse_outside(tables[b], setup.bodies[b], box);
-    if (!scene.faulty()) refuse_overlaps(tables, setup);
+    if (!scene.faulty()) refuse_overlaps(tables, setup.bodies, box.dimension);
 }
 
 /// Widest spacing of the bodies if the box is open along any axis, else 0.

@@ -1,0 +1,178 @@
+#include <cmath>
+
+#include "domain/water_fields.hpp"
+#include "physics/sph/pass_support.hpp"
+#include "physics/sph/small_vectors.hpp"
+#include "physics/water/neighbourhood.hpp"
+#include "physics/water/passes.hpp"
+
+namespace talus::water {
+
+namespace {
+
+using sph::dot;
+using sph::Vector;
+
+/// What a scene's water has besides pressure; what it has not costs nothing.
+struct Terms {
+    bool artificial, viscous;
+};
+
+/// In units of the radius of interaction R, the speed of sound c0 and the density at rest rho0.
+template <int D, Terms terms>
+class ForcePass {
+  public:
+    ForcePass(ParticleSet& particles, const Settings& settings)
+        : gravity_(settings.gravity),
+          frame_(sph::components<D>(particles, field::position), settings.radius()),
+          velocity_(sph::components<D>(particles, water_field::partner_velocity)),
+          volume_(particles.data(water_field::partner_volume)),
+          pressure_(particles.data(water_field::partner_pressure)),
+          density_(particles.data(water_field::partner_density)),
+          mass_(particles.data(field::mass)),
+          acceleration_(sph::components_to_write<D>(particles, field::acceleration)),
+          rate_(particles.data(water_field::density_rate)) {
+        const double radius = settings.radius(), c0 = settings.state.sound_speed,
+                     rho0 = settings.state.reference_density;
+        // grad W = -kernel x^3 r/R^(D+2) with x = 1 - r/R
+        const double kernel = 5 * sph::WendlandC2<D>::norm * std::pow(Settings::support(), D + 2);
+        force_scale_ = kernel * c0 * c0 / radius;
+        rate_scale_ = kernel * rho0 * c0 / radius;
+        mass_scale_ = 1 / (rho0 * std::pow(radius, D));
+        damping_ = static_cast<float>(settings.artificial_viscosity / Settings::support());
+        friction_ = static_cast<float>(2 * settings.viscosity / (rho0 * c0 * radius));
+        diffusion_ = static_cast<float>(2 * settings.density_diffusion / Settings::support());
+    }
+
+    std::uint64_t visit(const CellEntry& cell, std::span<const Run> runs) {
+        std::uint32_t own = 0;
+        for (std::uint32_t i = cell.begin; i < cell.end; ++i) own += volume_[i] > 0 ? 1 : 0;
+        if (own == 0) return 0;
+        gather(cell, runs);
+        for (std::uint32_t i = cell.begin; i < cell.end; ++i)
+            if (volume_[i] > 0) evaluate(i);
+        return std::uint64_t{own} * (water_.size() + wall_.size());
+    }
+
+  private:
+    static constexpr std::size_t at_velocity = D, at_volume = 2 * D, at_pressure = 2 * D + 1,
+                                 at_density = 2 * D + 2, value_count = 2 * D + 3;
+
+    void gather(const CellEntry& cell, std::span<const Run> runs) {
+        frame_.enter(cell);
+        water_.clear(count_of(runs));
+        wall_.clear(count_of(runs));
+        frame_.for_each_near(runs, [this](std::uint32_t k, std::size_t number,
+                                          const std::array<FloatLanes, D>& x, LaneBits bits) {
+            std::array<FloatLanes, value_count> values;
+            for (int d = 0; d < D; ++d) {
+                values[d] = x[d];
+                values[at_velocity + d] = load_first(velocity_[d] + k, number);
+            }
+            const FloatLanes volume = load_first(volume_ + k, number);
+            values[at_volume] = abs(volume);
+            values[at_pressure] = load_first(pressure_ + k, number);
+            values[at_density] = load_first(density_ + k, number);
+            const LaneBits is_wall = negative_lanes(volume);
+            if ((bits & ~is_wall) != 0) water_.append(bits & ~is_wall, values);
+            if ((bits & is_wall) != 0) wall_.append(bits & is_wall, values);
+        });
+        water_.pad();
+        wall_.pad();
+    }
+
+    struct Own {
+        std::array<FloatLanes, D> x, v;
+        FloatLanes pressure, density, excess;
+    };
+    struct Sums {
+        std::array<FloatLaneSum, D> force;
+        FloatLaneSum rate;
+    };
+
+    template <bool of_wall>
+    void add_up(const Own& own, const Block<value_count>& others, Sums& sums) const {
+        constexpr float softening = 0.01F / static_cast<float>(Settings::support() * Settings::support());
+        const std::array<const float*, value_count> from = others.columns();
+        for (std::size_t k = 0; k < others.size(); k += float_lane_count) {
+            Vector<FloatLanes, D> r, v;
+            for (int d = 0; d < D; ++d) {
+                r[d] = own.x[d] - load(from[d] + k);
+                v[d] = own.v[d] - load(from[at_velocity + d] + k);
+            }
+            const FloatLanes r2 = dot(r, r), approach = dot(r, v);
+            const FloatLanes x = max(1 - sqrt(r2), FloatLanes(0.0F));
+            const FloatLanes weight = load(from[at_volume] + k) * (x * x * x);
+            const FloatLanes last = load(from[at_density] + k);  // of walls whether they do not slip
+            FloatLanes pressure = own.pressure + load(from[at_pressure] + k);
+            if constexpr (terms.artificial) {
+                const FloatLanes damping = of_wall ? damping_ * last : FloatLanes(damping_);
+                pressure -= damping * min(approach, FloatLanes(0.0F)) / (r2 + softening);
+            }
+            for (int d = 0; d < D; ++d) {
+                FloatLanes force = pressure * r[d];
+                if constexpr (terms.viscous)
+                    force -= (of_wall ? friction_ * last : FloatLanes(friction_)) * v[d];
+                sums.force[d].add(k, weight * force);
+            }
+            FloatLanes rate = -own.density * approach;
+            if constexpr (!of_wall) rate += diffusion_ * (last - own.excess);
+            sums.rate.add(k, weight * rate);
+        }
+    }
+
+    [[gnu::flatten]] void evaluate(std::uint32_t i) {
+        Own own;
+        for (int d = 0; d < D; ++d) {
+            own.x[d] = frame_.place(d, i);
+            own.v[d] = velocity_[d][i];
+        }
+        own.pressure = pressure_[i];
+        own.excess = density_[i];
+        const double density = mass_scale_ * mass_[i] / static_cast<double>(volume_[i]);
+        own.density = static_cast<float>(density);
+        Sums sums{};
+        add_up<false>(own, water_, sums);
+        if (wall_.size() > 0) add_up<true>(own, wall_, sums);
+        for (int d = 0; d < D; ++d)
+            acceleration_[d][i] = gravity_[d] + force_scale_ / density * sums.force[d].total();
+        rate_[i] = rate_scale_ * sums.rate.total();
+    }
+
+    const std::array<double, 3> gravity_;
+    LocalFrame<D> frame_;
+    std::array<const float*, D> velocity_;
+    const float *volume_, *pressure_, *density_;
+    const double* mass_;
+    std::array<double*, D> acceleration_;
+    double* rate_;
+    double force_scale_, rate_scale_, mass_scale_;
+    float damping_, friction_, diffusion_;
+    Block<value_count> water_, wall_;
+};
+
+}  // namespace
+
+void force_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
+                sph::PassCount& count) {
+    const bool artificial = settings.artificial_viscosity > 0, viscous = settings.viscosity > 0;
+    const auto run = [&]<int D, Terms terms>() {
+        sph::visit_cells(ForcePass<D, terms>(particles, settings), table, which, count);
+    };
+    const auto in_dimension = [&]<int D>() {
+        if (artificial && viscous)
+            run.template operator()<D, Terms{true, true}>();
+        else if (artificial)
+            run.template operator()<D, Terms{true, false}>();
+        else if (viscous)
+            run.template operator()<D, Terms{false, true}>();
+        else
+            run.template operator()<D, Terms{false, false}>();
+    };
+    if (particles.dimension() == 2)
+        in_dimension.template operator()<2>();
+    else
+        in_dimension.template operator()<3>();
+}
+
+}  // namespace talus::water

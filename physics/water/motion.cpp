@@ -1,0 +1,65 @@
+#include "physics/water/motion.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "domain/water_fields.hpp"
+
+namespace talus::water {
+
+void kick(ParticleSet& particles, double time) {
+    const auto add = [&](double* to, const double* rate) {
+        for (std::size_t i = 0; i < particles.size(); ++i) to[i] += time * rate[i];
+    };
+    for (int a = 0; a < particles.dimension(); ++a)
+        add(particles.data(field::velocity, a), particles.data(field::acceleration, a));
+    add(particles.data(field::density), particles.data(water_field::density_rate));
+}
+
+namespace {
+
+/// The greatest of some values and whose it is.
+struct Greatest {
+    double value = 0;
+    std::size_t at = 0;
+    void take(double other, std::size_t i) {
+        if (!(other > value)) return;
+        value = other;
+        at = i;
+    }
+};
+
+}  // namespace
+
+sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (particles.size() == 0) return {infinity, 0, "no particles"};
+    constexpr double viscous_share = 0.125, accelerated_share = 0.25;
+    const double h = settings.smoothing_length;
+    const double *density = particles.data(field::density), *rate = particles.data(water_field::density_rate);
+    const int dimension = particles.dimension();
+    std::array<const double*, 3> a{};
+    for (int d = 0; d < 3; ++d)
+        a[static_cast<std::size_t>(d)] = particles.data(field::acceleration, std::min(d, dimension - 1));
+    Greatest speed, acceleration2;
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
+        acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
+        speed.take(settings.state.sound_speed_at(density[i]) + h * std::abs(rate[i]) / density[i], i);
+    }
+    const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed,
+                 sound = settings.courant * h / (speed.value + damping),
+                 accelerated = acceleration2.value > 0
+                                   ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
+                                   : infinity,
+                 viscous = settings.viscosity > 0
+                               ? viscous_share * h * h * settings.state.reference_density / settings.viscosity
+                               : infinity;
+    const std::uint64_t* id = particles.data(field::id);
+    if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
+    if (sound < accelerated) return {sound, id[speed.at], "sound"};
+    return {accelerated, id[acceleration2.at], "acceleration"};
+}
+
+}  // namespace talus::water

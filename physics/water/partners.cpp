@@ -1,0 +1,80 @@
+#include <cmath>
+
+#include "domain/water_fields.hpp"
+#include "physics/water/passes.hpp"
+
+namespace talus::water {
+
+namespace {
+
+/// Of water: excess density over that of water at rest in even gravity, but for a constant, and volume.
+void prepare_water(ParticleSet& particles, const Settings& settings, double time) {
+    const Tait& state = settings.state;
+    const double rho0 = state.reference_density, c0 = state.sound_speed;
+    const double *density = particles.data(field::density), *rate = particles.data(water_field::density_rate),
+                 *mass = particles.data(field::mass);
+    double* pressure = particles.data(field::pressure);
+    float *volume = particles.data(water_field::partner_volume),
+          *scaled = particles.data(water_field::partner_pressure),
+          *excess = particles.data(water_field::partner_density);
+    const int dimension = particles.dimension();
+    std::array<const double*, 3> x{};
+    std::array<double, 3> weight{};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a) {
+        x[a] = particles.data(field::position, static_cast<int>(a));
+        weight[a] = settings.bearing[a] / (c0 * c0);
+    }
+    if (dimension == 2) x[2] = x[1];  // weighs nothing
+    const double size = std::pow(settings.radius(), dimension), unit = 1 / (rho0 * c0 * c0);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const double ahead = density[i] + time * rate[i];
+        pressure[i] = state.pressure(ahead);
+        volume[i] = static_cast<float>(mass[i] / (ahead * size));
+        scaled[i] = static_cast<float>(unit * pressure[i]);
+        excess[i] = static_cast<float>(ahead / rho0 - 1 - weight[0] * x[0][i] - weight[1] * x[1][i] -
+                                       weight[2] * x[2][i]);
+    }
+    for (int a = 0; a < dimension; ++a) {
+        const double *v = particles.data(field::velocity, a), *rates = particles.data(field::acceleration, a);
+        float* to = particles.data(water_field::partner_velocity, a);
+        for (std::size_t i = 0; i < particles.size(); ++i)
+            to[i] = static_cast<float>((v[i] + time * rates[i]) / c0);
+    }
+}
+
+/// Of walls: as if no water were near.
+void prepare_walls(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls) {
+    const std::uint8_t* body = particles.data(field::body);
+    float *volume = particles.data(water_field::partner_volume),
+          *scaled = particles.data(water_field::partner_pressure),
+          *sticks = particles.data(water_field::partner_density);
+    double* pressure = particles.data(field::pressure);
+    const int dimension = particles.dimension();
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const sph::WallNow& wall = walls[body[i]];
+        if (!wall.is_wall) continue;
+        volume[i] = -volume[i];
+        scaled[i] = 0;
+        pressure[i] = 0;
+        sticks[i] = wall.slips ? 0 : 1;
+        dem::Vector3<> place;
+        place.x = particles.data(field::position, 0)[i];
+        place.y = particles.data(field::position, 1)[i];
+        if (dimension > 2) place.z = particles.data(field::position, 2)[i];
+        const dem::Vector3<> v = (1 / settings.state.sound_speed) * wall.pose.velocity_at(place);
+        const std::array<double, 3> velocity{v.x, v.y, v.z};
+        for (int a = 0; a < dimension; ++a)
+            particles.data(water_field::partner_velocity, a)[i] =
+                static_cast<float>(velocity[static_cast<std::size_t>(a)]);
+    }
+}
+
+}  // namespace
+
+void prepare_partners(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls,
+                      double time) {
+    prepare_water(particles, settings, time);
+    if (!walls.empty()) prepare_walls(particles, settings, walls);
+}
+
+}  // namespace talus::water

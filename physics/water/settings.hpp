@@ -1,0 +1,57 @@
+#pragma once
+#include <array>
+#include <cmath>
+
+namespace talus::water {
+
+/// Pressure of a barely compressible fluid, p = p0 + rho0 c0^2/gamma ((rho/rho0)^gamma - 1). J. J. Monaghan,
+/// J. Comput. Phys. 110 (1994) 399, eq. 4.
+struct Tait {
+    double reference_density = 1000;  ///< rho0 [kg/m3]
+    double sound_speed = 0;           ///< c0 [m/s]
+    int exponent = 7;                 ///< gamma, at least 2 [1]
+    double background_pressure = 0;   ///< p0 [Pa]
+
+    double stiffness() const { return reference_density * sound_speed * sound_speed / exponent; }
+    double pressure(double density) const {
+        return background_pressure + stiffness() * (power(density / reference_density, exponent) - 1);
+    }
+    double density(double pressure) const {
+        return reference_density *
+               std::pow(1 + (pressure - background_pressure) / stiffness(), 1.0 / exponent);
+    }
+    double sound_speed_at(double density) const {
+        return sound_speed * std::sqrt(power(density / reference_density, exponent - 1));
+    }
+    /// Energy of compression per mass, the integral of p/rho^2 from rho0 on [J/kg].
+    double energy(double density) const {
+        const double s = density / reference_density;
+        return stiffness() / reference_density * ((power(s, exponent - 1) - 1) / (exponent - 1) + 1 / s - 1) +
+               background_pressure / reference_density * (1 - 1 / s);
+    }
+
+  private:
+    static double power(double base, int exponent) {
+        double product = base;
+        for (int k = 1; k < exponent; ++k) product *= base;
+        return product;
+    }
+};
+
+/// What a scene says of its water, resolved.
+struct Settings {
+    Tait state;
+    double smoothing_length = 0;      ///< h; the kernel, Wendland's C2, ends at 2 h [m]
+    double viscosity = 0;             ///< [Pa s]
+    double artificial_viscosity = 0;  ///< alpha [1]
+    double density_diffusion = 0.1;   ///< delta [1]
+    std::array<double, 3> gravity{};  ///< [m/s2]
+    /// Gravity along axes that have an end, whose weight pressure bears at rest [m/s2].
+    std::array<double, 3> bearing{};
+    double courant = 0.4;
+
+    static constexpr double support() { return 2; }  ///< of the kernel [h]
+    double radius() const { return support() * smoothing_length; }
+};
+
+}  // namespace talus::water

@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "domain/water_fields.hpp"
+#include "physics/sph/pass_support.hpp"
+#include "physics/water/neighbourhood.hpp"
+#include "physics/water/passes.hpp"
+
+namespace talus::water {
+
+namespace {
+
+dem::Vector3<> vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> array_of(const dem::Vector3<>& v) { return {v.x, v.y, v.z}; }
+
+template <int D>
+class WallPass {
+  public:
+    WallPass(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls)
+        : settings_(settings),
+          walls_(walls),
+          position_(sph::components<D>(particles, field::position)),
+          frame_(position_, settings.radius()),
+          mass_(particles.data(field::mass)),
+          body_(particles.data(field::body)),
+          velocity_(sph::components_to_write<D>(particles, water_field::partner_velocity)),
+          volume_(particles.data(water_field::partner_volume)),
+          partner_pressure_(particles.data(water_field::partner_pressure)),
+          pressure_(particles.data(field::pressure)) {}
+
+    void visit(const CellEntry& cell, std::span<const Run> runs) {
+        const auto is_wall = [](float volume) { return volume < 0; };
+        if (std::none_of(volume_ + cell.begin, volume_ + cell.end, is_wall)) return;
+        gather(cell, runs);
+        if (water_.size() == 0) return;
+        for (std::uint32_t i = cell.begin; i < cell.end; ++i)
+            if (is_wall(volume_[i])) extrapolate(i);
+    }
+
+  private:
+    static constexpr std::size_t at_velocity = D, at_pressure = 2 * D, value_count = 2 * D + 1;
+
+    void gather(const CellEntry& cell, std::span<const Run> runs) {
+        frame_.enter(cell);
+        water_.clear(count_of(runs));
+        frame_.for_each_near(runs, [this](std::uint32_t k, std::size_t number,
+                                          const std::array<FloatLanes, D>& x, LaneBits bits) {
+            bits &= ~negative_lanes(load_first(volume_ + k, number));
+            if (bits == 0) return;
+            std::array<FloatLanes, value_count> values;
+            for (int d = 0; d < D; ++d) {
+                values[d] = x[d];
+                values[at_velocity + d] = load_first(velocity_[d] + k, number);
+            }
+            values[at_pressure] = load_first(partner_pressure_ + k, number);
+            water_.append(bits, values);
+        });
+        water_.pad();
+    }
+
+    void extrapolate(std::uint32_t i) {
+        const sph::WallNow& wall = walls_[body_[i]];
+        const Tait& state = settings_.state;
+        const double sound2 = state.sound_speed * state.sound_speed;
+        const std::array<double, 3> weight = array_of((settings_.radius() / sound2) * wall.weight);
+        const std::array<const float*, value_count> from = water_.columns();
+        FloatLaneSum all, pressure;
+        std::array<FloatLaneSum, D> velocity{};
+        for (std::size_t k = 0; k < water_.size(); k += float_lane_count) {
+            FloatLanes r2 = 0, depth = 0;
+            for (int d = 0; d < D; ++d) {
+                const FloatLanes r = frame_.place(d, i) - load(from[d] + k);
+                r2 += r * r;
+                depth += static_cast<float>(weight[d]) * r;
+            }
+            const FloatLanes q = sqrt(r2), x = max(1 - q, FloatLanes(0.0F)), x2 = x * x;
+            const FloatLanes share = x2 * x2 * (1 + 4 * q), p = load(from[at_pressure] + k);
+            all.add(k, share);
+            pressure.add(k, share * (p + (1 + p) * depth));  // rho/rho0 = 1 + p/(rho0 c0^2), nearly
+            for (int d = 0; d < D; ++d) velocity[d].add(k, share * load(from[at_velocity + d] + k));
+        }
+        const double total = all.total();
+        if (total == 0) return;
+        const double scale = state.reference_density * sound2 / total;
+        pressure_[i] = std::max(0.0, scale * pressure.total());
+        std::array<double, 3> place{};
+        for (int d = 0; d < D; ++d) place[d] = position_[d][i];
+        const std::array<double, 3> own = array_of(wall.pose.velocity_at(vector_of(place)));
+        for (int d = 0; d < D && !wall.slips; ++d)
+            velocity_[d][i] =
+                static_cast<float>(2 * own[d] / state.sound_speed - velocity[d].total() / total);
+        partner_pressure_[i] = static_cast<float>(pressure_[i] / (state.reference_density * sound2));
+        const double radius = settings_.radius(), size = D == 2 ? radius * radius : radius * radius * radius;
+        volume_[i] = static_cast<float>(-mass_[i] / (state.density(pressure_[i]) * size));
+    }
+
+    const Settings& settings_;
+    std::span<const sph::WallNow> walls_;
+    std::array<const double*, D> position_;
+    LocalFrame<D> frame_;
+    const double* mass_;
+    const std::uint8_t* body_;
+    std::array<float*, D> velocity_;
+    float *volume_, *partner_pressure_;
+    double* pressure_;
+    Block<value_count> water_;
+};
+
+}  // namespace
+
+void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
+               std::span<const sph::WallNow> walls) {
+    const auto run = [&](auto&& pass) {
+        table.for_each_own(which, [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+            pass.visit(cell, runs);
+        });
+    };
+    if (particles.dimension() == 2)
+        run(WallPass<2>(particles, settings, walls));
+    else
+        run(WallPass<3>(particles, settings, walls));
+}
+
+}  // namespace talus::water

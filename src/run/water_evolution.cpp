@@ -1,0 +1,133 @@
+#include "src/run/water_evolution.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "io/checkpoint.hpp"
+#include "src/run/options.hpp"
+#include "src/run/scene_checks.hpp"
+
+namespace talus {
+
+WaterEvolution::WaterEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until)
+    : comm_(comm),
+      scene_(scene),
+      setup_(read_water_scene(comm, scene)),
+      end_time_(until.value_or(setup_.output.end_time)) {
+    check_snapshots(scene, setup_.output, end_time_);
+    refuse_short_box(scene, setup_.simulation.box, setup_.simulation.settings.radius());
+}
+
+std::vector<std::string> WaterEvolution::warnings() const {
+    std::vector<std::string> found;
+    const water::Settings& settings = setup_.simulation.settings;
+    if (settings.viscosity == 0 && settings.artificial_viscosity == 0)
+        found.emplace_back(
+            "the water has neither water.viscosity nor water.artificial_viscosity: sound in it "
+            "is damped by the diffusion of density alone");
+    for (int axis = 0; axis < setup_.simulation.box.dimension; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        if (setup_.simulation.box.boundary[a] == Boundary::reflecting && settings.gravity[a] != 0)
+            found.push_back(
+                fmt::format("gravity acts across the reflecting boundaries along {}, whose images "
+                            "do not bear the weight of water; walls of particles do",
+                            "xyz"[a]));
+    }
+    return found;
+}
+
+void WaterEvolution::emplace(ParticleSet particles) {
+    simulation_.emplace(comm_, setup_.simulation, std::move(particles));
+}
+
+void WaterEvolution::create(const std::function<void()>&) { emplace(make_water(comm_, setup_)); }
+
+ReadCheckpoint WaterEvolution::read(const std::filesystem::path& what,
+                                    const std::filesystem::path& output_folder) {
+    const auto began = std::chrono::steady_clock::now();
+    ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
+    ParticleSet particles = empty_water(setup_.simulation);
+    found.state = read_checkpoint(comm_, found.file, {&particles});
+    RunState wanted;
+    describe(wanted);
+    if (found.state.materials != wanted.materials)
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: is of the bodies {}; this scene has {}", found.file.string(),
+                        fmt::join(found.state.materials, ", "), fmt::join(wanted.materials, ", ")));
+    emplace(std::move(particles));
+    found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return found;
+}
+
+void WaterEvolution::describe(RunState& state) const {
+    for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
+        const bool is_wall = !setup_.simulation.walls.empty() && setup_.simulation.walls[b];
+        state.materials.push_back(fmt::format("{} ({})", setup_.bodies[b].name, is_wall ? "wall" : "water"));
+    }
+    if (simulation_) simulation_->save_numbers(state.numbers);
+}
+
+std::vector<std::string> WaterEvolution::news() {
+    constexpr double slow = 0.15;  // of the speed of sound: changes of the density of about a per cent
+    if (told_of_speed_) return {};
+    const double sound = setup_.simulation.settings.state.sound_speed;
+    if (greatest_speed_ < slow * sound) return {};
+    told_of_speed_ = true;
+    return {fmt::format(
+        "time {:.4g} s: water moves at {:.4g} m/s, {:.2g} of the speed of sound, {:.4g} m/s; above "
+        "a tenth its density changes by more than a per cent: a greater water.greatest_speed?",
+        time(), greatest_speed_, greatest_speed_ / sound, sound)};
+}
+
+std::vector<SnapshotField> WaterEvolution::snapshot_fields() const {
+    std::vector<SnapshotField> fields;
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::mass, &field::density, &field::pressure, &field::body})
+        fields.push_back({.field = info});
+    return fields;
+}
+
+std::vector<CsvColumn> WaterEvolution::diagnostics_columns() const {
+    std::vector<CsvColumn> columns{{"time", "s"},
+                                   {"time_step", "s"},
+                                   {"mass", "kg"},
+                                   {"kinetic_energy", "J"},
+                                   {"potential_energy", "J"},
+                                   {"elastic_energy", "J"},
+                                   {"greatest_speed", "m s-1"},
+                                   {"least_density", "kg m-3"},
+                                   {"greatest_density", "kg m-3"},
+                                   {"least_pressure", "Pa"},
+                                   {"greatest_pressure", "Pa"}};
+    for (int a = 0; a < setup_.simulation.box.dimension; ++a) {
+        const char axis = "xyz"[a];
+        columns.push_back({fmt::format("momentum_{}", axis), "kg m s-1"});
+        columns.push_back({fmt::format("least_{}", axis), "m"});
+        columns.push_back({fmt::format("greatest_{}", axis), "m"});
+    }
+    return columns;
+}
+
+Diagnostics WaterEvolution::diagnostics() {
+    const WaterTotals t = simulation_->totals();
+    greatest_speed_ = std::max(greatest_speed_, t.greatest_speed);
+    Diagnostics found{
+        {time(), time_step(), t.mass, t.kinetic_energy, t.potential_energy, t.elastic_energy,
+         t.greatest_speed, t.least_density, t.greatest_density, t.least_pressure, t.greatest_pressure},
+        0};
+    for (std::size_t a = 0; a < static_cast<std::size_t>(setup_.simulation.box.dimension); ++a)
+        found.row.insert(found.row.end(), {t.momentum[a], t.least_place[a], t.greatest_place[a]});
+    return found;
+}
+
+std::string WaterEvolution::summary() const {
+    const WaterTotals t = simulation_->totals();
+    return fmt::format("water: {:.6g} kg, densities from {:.6g} to {:.6g} kg/m3, greatest speed {:.4g} m/s",
+                       t.mass, t.least_density, t.greatest_density, t.greatest_speed);
+}
+
+}  // namespace talus

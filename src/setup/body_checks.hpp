@@ -1,0 +1,20 @@
+#pragma once
+#include <vector>
+
+#include "domain/box.hpp"
+#include "io/scene.hpp"
+#include "src/setup/bodies.hpp"
+
+namespace talus {
+
+/// Records bodies without particles, one table each.
+void refuse_empty_bodies(const std::vector<Section>& tables, const std::vector<Body>& bodies,
+                         const std::vector<BodyCensus>& census);
+
+/// Records a body that reaches out of the box where that is closed.
+void refuse_outside(const Section& table, const Body& body, const Box& box);
+
+/// Records bodies of which one has particles inside another.
+void refuse_overlaps(const std::vector<Section>& tables, const std::vector<Body>& bodies, int dimension);
+
+}  // namespace talus

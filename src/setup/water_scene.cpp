@@ -1,0 +1,158 @@
+#include "src/setup/water_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "src/setup/body_checks.hpp"
+#include "src/setup/body_reader.hpp"
+#include "src/setup/body_wall_reader.hpp"
+#include "src/setup/names.hpp"
+#include "src/setup/run_reader.hpp"
+#include "src/setup/shape_reader.hpp"
+
+namespace talus {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Range positive{0, infinity, true};
+constexpr Range not_negative{0};
+constexpr double sound_over_speed = 10;  // for changes of the density below one per cent
+
+/// Everything but what follows from the spacing.
+void read_water(const Section& table, WaterScene& scene) {
+    const Box& box = scene.simulation.box;
+    water::Settings& settings = scene.simulation.settings;
+    settings.state.reference_density = table.number("density", "kg/m3", 1000.0, positive);
+    if (table.has("greatest_speed") || !table.has("sound_speed"))
+        scene.greatest_speed = table.number("greatest_speed", "m/s", {}, positive);
+    settings.state.sound_speed =
+        table.number("sound_speed", "m/s", sound_over_speed * scene.greatest_speed, positive);
+    settings.state.exponent = static_cast<int>(table.integer("exponent", 7, 2, 20));
+    settings.state.background_pressure = table.number("background_pressure", "Pa", 0.0, not_negative);
+    settings.viscosity = table.number("viscosity", "Pa s", 0.0, not_negative);
+    settings.artificial_viscosity = table.number("artificial_viscosity", "1", 0.0, {0, 10});
+    settings.density_diffusion = table.number("density_diffusion", "1", 0.1, {0, 1});
+    settings.courant = table.number("courant", "1", 0.4, {0, 1, true});
+    const Point gravity = origin_default(table, "gravity", "m/s2", box.dimension);
+    for (std::size_t a = 0; a < 3; ++a) {
+        settings.gravity[a] = gravity[a];
+        if (box.boundary[a] != Boundary::periodic) settings.bearing[a] = gravity[a];
+    }
+}
+
+void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water) {
+    const Section root = scene.root();
+    WaterSetup& setup = water.simulation;
+    const Box& box = setup.box;
+    const std::vector<Section> tables = root.sections("body");
+    if (tables.empty()) root.error("body", "a scene needs at least one [[body]]");
+    if (tables.size() > 255) root.error("body", "more than 255 bodies");
+    water.bodies.reserve(tables.size());
+    for (const Section& table : tables) {
+        const BodyContext context{.comm = comm,
+                                  .scene = scene,
+                                  .dimension = box.dimension,
+                                  .domain = {box.lower, box.upper},
+                                  .boundaries = box.boundary,
+                                  .first_body = water.bodies.empty() ? nullptr : &water.bodies.front(),
+                                  .in_impact = false,
+                                  .gravitational_constant = 0,
+                                  .seed = water.seed};
+        const Body body = read_body_form(table, setup.settings.state.reference_density, context);
+        refuse_same_name(table, water.bodies, body.name);
+        water.bodies.push_back(body);
+        setup.walls.push_back(read_body_wall(table, box.dimension, false));
+        water.surface.emplace_back();
+        if (!setup.walls.back() && table.has("surface")) water.surface.back() = table.number("surface", "m");
+    }
+    if (scene.faulty()) return;
+    water.census = take_census(water.bodies, box.dimension, water.seed);
+    refuse_empty_bodies(tables, water.bodies, water.census);
+    for (std::size_t b = 0; b < tables.size(); ++b) refuse_outside(tables[b], water.bodies[b], box);
+    if (!scene.faulty()) refuse_overlaps(tables, water.bodies, box.dimension);
+    const auto spacing = [&](std::size_t b) {
+        return std::pow(water.census[b].particle_volume, 1.0 / box.dimension);
+    };
+    for (std::size_t b = 0; b < tables.size() && !scene.faulty(); ++b) {
+        constexpr double alike = 0.1;
+        if (water.spacing == 0 && !setup.walls[b]) water.spacing = spacing(b);
+        if (water.spacing > 0 && std::abs(spacing(b) / water.spacing - 1) > alike)
+            tables[b].error("spacing",
+                            fmt::format("particles are {:.4g} m apart, those of the water before {:.4g} m; "
+                                        "allowed: the same within a tenth",
+                                        spacing(b), water.spacing));
+    }
+    if (water.spacing == 0 && !scene.faulty()) root.error("body", "there is no water: all bodies are walls");
+    if (std::none_of(setup.walls.begin(), setup.walls.end(),
+                     [](const auto& wall) { return wall.has_value(); }))
+        setup.walls.clear();
+}
+
+}  // namespace
+
+bool is_water_scene(const Scene& scene) { return scene.root().section("water").exists(); }
+
+WaterScene read_water_scene(const Communicator& comm, const Scene& scene) {
+    const Section root = scene.root();
+    WaterScene water;
+    WaterSetup& setup = water.simulation;
+    water.title = root.text("title", scene.file().stem().string());
+    water.seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
+    const int dimension = static_cast<int>(root.integer("dimension", 3, 2, 3));
+    setup.box = read_box(root.section("box"), dimension);
+    const Section table = root.section("water");
+    read_water(table, water);
+    const double smoothing = table.number("smoothing", "1", dimension == 2 ? 2.0 : std::sqrt(3.0), {1, 4});
+    read_bodies(comm, scene, water);
+    setup.settings.smoothing_length = smoothing * water.spacing;
+    water.output = read_output(root);
+    const Section run = root.section("run");
+    setup.partition = read_partition(run);
+    setup.rebalance_interval = read_rebalance_interval(run);
+    scene.finish();
+    return water;
+}
+
+ParticleSet empty_water(const WaterSetup& setup) {
+    ParticleSet particles("water", setup.box.dimension);
+    WaterSimulation::add_fields(particles, setup);
+    return particles;
+}
+
+namespace {
+
+/// Gives a body the pressure of its own weight under a level surface, and the mass of its compressed water.
+void put_weight(const WaterSetup& setup, double surface, std::uint8_t body, ParticleSet& particles) {
+    const water::Settings& settings = setup.settings;
+    const auto& g = settings.gravity;
+    const double gravity = std::hypot(g[0], g[1], g[2]);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (particles.data(field::body)[i] != body) continue;
+        double depth = gravity * surface;
+        for (int a = 0; a < particles.dimension(); ++a)
+            depth += g[static_cast<std::size_t>(a)] * particles.data(field::position, a)[i];
+        const double rest = settings.state.reference_density,
+                     density = settings.state.density(settings.state.background_pressure +
+                                                      rest * std::max(0.0, depth));
+        particles.data(field::mass)[i] *= density / particles.data(field::density)[i];
+        particles.data(field::density)[i] = density;
+    }
+}
+
+}  // namespace
+
+ParticleSet make_water(const Communicator& comm, const WaterScene& scene) {
+    const std::vector<Material> none(scene.bodies.size());
+    ParticleSet particles =
+        make_particles(comm, scene.bodies, none, empty_water(scene.simulation), {}, scene.seed);
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+        if (scene.surface[b])
+            put_weight(scene.simulation, *scene.surface[b], static_cast<std::uint8_t>(b), particles);
+    return particles;
+}
+
+}  // namespace talus

@@ -1,0 +1,126 @@
+#include "src/water_simulation.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "domain/boundary.hpp"
+#include "domain/water_fields.hpp"
+#include "src/step_support.hpp"
+
+namespace talus {
+
+namespace {
+constexpr double pairs_worth_a_particle = 40;  // what costs the same as all but pairs
+constexpr int cells_per_radius = 2;            // docs/decisions/022
+}  // namespace
+
+WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, ParticleSet particles)
+    : comm_(comm),
+      setup_(std::move(setup)),
+      particles_(std::move(particles)),
+      decomposition_(comm, setup_.partition) {
+    decomposition_.expect(particles_);
+}
+
+void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup&) {
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::mass, &field::density, &field::body, &field::acceleration,
+             &water_field::density_rate, &field::pressure, &water_field::partner_velocity,
+             &water_field::partner_volume, &water_field::partner_pressure, &water_field::partner_density})
+        particles.add(*info);
+}
+
+double WaterSimulation::work() const {
+    return std::accumulate(pass_count_.work_of_cell.begin(), pass_count_.work_of_cell.end(), 0.0);
+}
+
+void WaterSimulation::arrange() {
+    if (!grid_) {
+        grid_ = std::make_unique<CellGrid>(setup_.box, setup_.settings.radius(), cells_per_radius);
+        decomposition_.divide(particles_, *grid_);
+    }
+    decomposition_.arrange(particles_, *grid_);
+}
+
+void WaterSimulation::start() {
+    arrange();
+    evaluate(0, 0);
+    conclude_step();
+}
+
+void WaterSimulation::resume(double time, double time_step, std::uint64_t step,
+                             const std::map<std::string, double>&) {
+    time_ = time;
+    time_step_ = time_step;
+    step_ = step;
+    arrange();
+}
+
+void WaterSimulation::step() {
+    const double dt = time_step_;
+    phases_.enter(Phase::motion);
+    water::kick(particles_, dt / 2);
+    sph::move_walls(particles_, walls_at(time_ + dt / 2));
+    sph::drift(particles_, dt);
+    apply_boundaries(particles_, setup_.box);
+    phases_.enter(Phase::decompose);
+    const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
+    if (work_measured_ && interval > 0 && step_ % interval == 0)
+        decomposition_.rebalance(pass_count_.work_of_cell);
+    arrange();
+    evaluate(dt / 2, time_ + dt);
+    phases_.enter(Phase::motion);
+    water::kick(particles_, dt / 2);
+    time_ += dt;
+    ++step_;
+    conclude_step();
+    phases_.stop();
+}
+
+/// Everything that follows from positions, velocities and densities at `time`, `time_ahead` of the state.
+void WaterSimulation::evaluate(double time_ahead, double time) {
+    const water::Settings& settings = setup_.settings;
+    const CellTable& table = decomposition_.table();
+    Halo& halo = decomposition_.halo();
+    const std::vector<sph::WallNow> walls = walls_at(time);
+    phases_.enter(Phase::material);
+    water::prepare_partners(particles_, settings, walls, time_ahead);
+    const std::initializer_list<const FieldInfo*> partners = {
+        &field::position, &water_field::partner_velocity, &water_field::partner_volume,
+        &water_field::partner_pressure, &water_field::partner_density};
+    if (!walls.empty()) {  // which see the water's copies before copies of theirs are made
+        phases_.enter(Phase::halo);
+        halo.begin(particles_, partners);
+        halo.finish();
+        phases_.enter(Phase::gradients);
+        water::wall_pass(particles_, table, Cells::all, settings, walls);
+    }
+    pass_count_.pairs = 0;
+    pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
+    overlapped(phases_, Phase::forces, halo, particles_, partners,
+               [&](Cells cells) { water::force_pass(particles_, table, cells, settings, pass_count_); });
+    const std::span<const CellEntry> cells = decomposition_.own_cells();
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);
+    sph::move_walls(particles_, walls);
+    pairs_ += pass_count_.pairs;
+    work_measured_ = true;
+}
+
+std::vector<sph::WallNow> WaterSimulation::walls_at(double time) const {
+    const auto& g = setup_.settings.gravity;
+    std::vector<sph::WallNow> walls(setup_.walls.size());
+    for (std::size_t b = 0; b < walls.size(); ++b)
+        if (setup_.walls[b]) walls[b] = sph::at_time(*setup_.walls[b], time, {g[0], g[1], g[2]});
+    return walls;
+}
+
+/// Agrees on the next time step, and that the state is finite: one reduction for both.
+void WaterSimulation::conclude_step() {
+    limit_ = water::stable_time_step(particles_, setup_.settings);
+    phases_.enter(Phase::wait);
+    time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);
+}
+
+}  // namespace talus

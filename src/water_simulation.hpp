@@ -1,0 +1,108 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "comm/communicator.hpp"
+#include "comm/decomposition.hpp"
+#include "domain/box.hpp"
+#include "domain/cell_grid.hpp"
+#include "domain/particles.hpp"
+#include "physics/sph/walls.hpp"
+#include "physics/water/motion.hpp"
+#include "physics/water/passes.hpp"
+#include "physics/water/settings.hpp"
+#include "src/phases.hpp"
+
+namespace talus {
+
+/// Everything that defines a run of water besides the particles: what a scene says, resolved.
+struct WaterSetup {
+    Box box;
+    water::Settings settings;
+    std::vector<std::optional<sph::Wall>> walls;  ///< one a body: it is a wall; empty: none is
+    PartitionMethod partition = PartitionMethod::cheapest;
+    int rebalance_interval = 10;  ///< steps between looks at the imbalance
+};
+
+/// Totals over the water, walls left out: exact sums rounded once, the same bits on any number of ranks.
+struct WaterTotals {
+    double mass = 0;              ///< [kg]
+    double kinetic_energy = 0;    ///< [J]
+    double potential_energy = 0;  ///< in even gravity, from the origin [J]
+    double elastic_energy = 0;    ///< of compression [J]
+    std::array<double, 3> momentum{};
+    double greatest_speed = 0;
+    double least_density = 0, greatest_density = 0, least_pressure = 0, greatest_pressure = 0;
+    std::array<double, 3> least_place{}, greatest_place{};  ///< corners of what the water fills [m]
+    std::uint64_t particles = 0;
+
+    double total_energy() const { return kinetic_energy + potential_energy + elastic_energy; }
+};
+
+/// Water as a barely compressible fluid of particles, with walls of particles around it.
+class WaterSimulation {
+  public:
+    /// `particles` hold their share of the initial state or of a checkpoint, on any ranks, with the fields of
+    /// add_fields(). Collective.
+    WaterSimulation(const Communicator& comm, WaterSetup setup, ParticleSet particles);
+
+    static void add_fields(ParticleSet& particles, const WaterSetup& setup);
+
+    /// First evaluation of a new run at time 0. Collective.
+    void start();
+    /// Goes on from a checkpoint's state and what save_numbers() added to it. Collective.
+    void resume(double time, double time_step, std::uint64_t step,
+                const std::map<std::string, double>& numbers);
+
+    /// One time step. Throws AgreedError (exit code 1) if a value is not finite or a particle was lost.
+    /// Collective.
+    void step();
+
+    double time() const { return time_; }            ///< [s]
+    double time_step() const { return time_step_; }  ///< of the next step [s]
+    std::uint64_t step_count() const { return step_; }
+    const ParticleSet& particles() const { return particles_; }
+    const WaterSetup& setup() const { return setup_; }
+    const Communicator& comm() const { return comm_; }
+    const Decomposition& decomposition() const { return decomposition_; }
+    std::uint64_t total_particles() const { return decomposition_.total_particles(); }
+    /// Pairs that this rank looked at in the force pass since the counters were reset.
+    std::uint64_t pairs() const { return pairs_; }
+    /// Work of this rank at the last evaluation, in pairs.
+    double work() const;
+    Phases& phases() { return phases_; }
+    const sph::StepLimit& step_limit() const { return limit_; }
+    void reset_counters() {
+        pairs_ = 0;
+        phases_ = {};
+    }
+    void save_numbers(std::map<std::string, double>&) const {}
+    /// Collective.
+    WaterTotals totals() const;
+
+  private:
+    void arrange();
+    bool is_wall(std::size_t body) const { return !setup_.walls.empty() && setup_.walls[body]; }
+    void evaluate(double time_ahead, double time);
+    std::vector<sph::WallNow> walls_at(double time) const;
+    void conclude_step();
+
+    const Communicator& comm_;
+    WaterSetup setup_;
+    ParticleSet particles_;
+    Decomposition decomposition_;
+    std::unique_ptr<CellGrid> grid_;
+    double time_ = 0, time_step_ = 0;
+    std::uint64_t step_ = 0, pairs_ = 0;
+    sph::PassCount pass_count_;
+    bool work_measured_ = false;
+    sph::StepLimit limit_{};
+    Phases phases_;
+};
+
+}  // namespace talus
