@@ -11,16 +11,22 @@ RUNS = Path(__file__).resolve().parent.parent / "runs"
 ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
 
 
+def run_program(arguments, program=RUNS.parent / "build" / "release" / "talus"):
+    """The finished process of the program on one rank."""
+    return subprocess.run([str(program), *map(str, arguments)], capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          env=ENVIRONMENT)
+
+
 def run_scene(program, folder, scene, settings=(), until=None):
     """Runs runs/`scene` with settings "key=value" on one rank. Returns a row: work (pairs, the same on any machine), particles,
     steps, seconds of the steps, and `errors` {name of the reference: relative error}; a run that fails says so in `failed`."""
     out = Path(folder) / f"run_{len(list(Path(folder).iterdir()))}"
-    line = [str(program), "run", str(RUNS / scene), "--out", str(out)]
+    line = ["run", RUNS / scene, "--out", out]
     for setting in settings:
         line += ["--set", setting]
     if until is not None:
-        line += ["--until", str(until)]
-    done = subprocess.run(line, capture_output=True, text=True, stdin=subprocess.DEVNULL, env=ENVIRONMENT)
+        line += ["--until", until]
+    done = run_program(line, program)
     if done.returncode != 0:
         return {"failed": (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[0]}
     performance = json.loads((out / "performance.json").read_text())

@@ -5,13 +5,16 @@ version, and stopped and restarted while its fragments fall together.
 
 usage: same_bits.py PROGRAM MPIRUN RUNS_FOLDER [SCENE ...]
 """
+import itertools
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
 
+AT_A_TIME = 2  # scenes
 STEPS = 14
 STOP = 5
 STEPS_OF_SCENES = {"silo": (600, 120)}  # filled while it settles, opened, and grains deleted below it
@@ -25,7 +28,7 @@ STEPS_OF_GRAINS = 20  # times as many: theirs are short
 
 class Runner:
     def __init__(self, program, mpirun, folder):
-        self.program, self.mpirun, self.folder, self.count = program, mpirun, folder, 0
+        self.program, self.mpirun, self.folder, self.count = program, mpirun, folder, itertools.count()
         self.environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
                                 OMPI_MCA_rmaps_base_oversubscribe="1", OMPI_MCA_mpi_yield_when_idle="1",
                                 OMP_NUM_THREADS="1")
@@ -41,8 +44,7 @@ class Runner:
     def run(self, scene, steps, ranks, partition, out=None, restart=False):
         """Runs a scene (ranks 0: without mpirun) and returns its output folder."""
         if out is None:
-            self.count += 1
-            out = self.folder / f"{scene.name}_{self.count}"
+            out = self.folder / f"{scene.name}_{next(self.count)}"
         arguments = ["run", scene, "--quick", "--out", out, "--set", f"run.decomposition={partition}",
                      "--set", "run.rebalance_interval=2", *remnants_asked(scene)]
         arguments += ["--steps", steps] if steps else []
@@ -125,9 +127,8 @@ def check(runner, scene, restart):
     found = runner.hash(out)
     if found != reference or findings(out) != found_first or rasters(out) != rasters(first):
         wrong.append(f"stopped at step {stop} on {before} ranks, restarted on {after}: {found}")
-    print(f"{scene.name}: {'same bits, ' + reference if not wrong else 'DIFFERS from ' + reference}")
-    for line in wrong:
-        print("   ", line)
+    told = [f"{scene.name}: {'same bits, ' + reference if not wrong else 'DIFFERS from ' + reference}"]
+    print("\n    ".join(told + wrong), flush=True)
     return not wrong
 
 
@@ -139,7 +140,9 @@ def main():
     assert scenes, "no scenes found"
     with tempfile.TemporaryDirectory() as folder:
         runner = Runner(program, mpirun, pathlib.Path(folder))
-        results = [check(runner, scene, RESTARTS[k % len(RESTARTS)]) for k, scene in enumerate(scenes)]
+        with ThreadPoolExecutor(AT_A_TIME) as pool:  # half of the time goes into starting ranks
+            results = list(pool.map(lambda numbered: check(runner, numbered[1], RESTARTS[numbered[0] % len(RESTARTS)]),
+                                    enumerate(scenes)))
     sys.exit(0 if all(results) else 1)
 
 
