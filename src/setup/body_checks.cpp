@@ -15,6 +15,21 @@ void refuse_outside(const Section& table, const Body& body, const Box& box) {
     }
 }
 
+void refuse_too_many_places(const std::vector<Section>& tables, const std::vector<Body>& bodies,
+                            int dimension) {
+    constexpr double most = 1e10;
+    for (std::size_t b = 0; b < tables.size(); ++b) {
+        const BoxShape around = bounds(bodies[b].shape, dimension);
+        double places = 1;
+        for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+            places *= (around.upper[a] - around.lower[a]) / bodies[b].spacing;
+        if (!(places < most))
+            tables[b].error(
+                "", fmt::format("has {:.3g} places for particles {:.3g} m apart (allowed: below {:.0e})",
+                                places, bodies[b].spacing, most));
+    }
+}
+
 void refuse_empty_bodies(const std::vector<Section>& tables, const std::vector<Body>& bodies,
                          const std::vector<BodyCensus>& census) {
     for (std::size_t b = 0; b < bodies.size(); ++b)

@@ -7,6 +7,10 @@
 
 namespace talus {
 
+/// Records bodies around which there are more places for particles than can be gone through one by one.
+void refuse_too_many_places(const std::vector<Section>& tables, const std::vector<Body>& bodies,
+                            int dimension);
+
 /// Records bodies without particles, one table each.
 void refuse_empty_bodies(const std::vector<Section>& tables, const std::vector<Body>& bodies,
                          const std::vector<BodyCensus>& census);

@@ -169,7 +169,7 @@ void read_bodies(const Communicator& comm, const Scene& scene, SceneSetup& setup
     auto& walls = setup.simulation.walls;
     if (std::none_of(walls.begin(), walls.end(), [](const auto& wall) { return wall.has_value(); }))
         walls.clear();
-    refuse_too_many_places(tables, setup);
+    refuse_too_many_places(tables, setup.bodies, box.dimension);
     if (scene.faulty()) return;
     setup.census = take_census(setup.bodies, box.dimension, setup.seed);
     refuse_empty_bodies(tables, setup.bodies, setup.census);

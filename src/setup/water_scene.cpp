@@ -69,6 +69,7 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
         water.surface.emplace_back();
         if (!setup.walls.back() && table.has("surface")) water.surface.back() = table.number("surface", "m");
     }
+    if (!scene.faulty()) refuse_too_many_places(tables, water.bodies, box.dimension);
     if (scene.faulty()) return;
     water.census = take_census(water.bodies, box.dimension, water.seed);
     refuse_empty_bodies(tables, water.bodies, water.census);

@@ -40,11 +40,13 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
-/// One to three changes: a line lost, doubled or moved, a value replaced by another that fits worse, a byte changed.
+/// One to three changes: a line lost, doubled or moved, a value replaced by another that fits worse, a byte
+/// changed.
 std::string spoilt(const std::string& text, Dice dice) {
-    static constexpr std::array values{"0",     "-1",      "1e308", "-1e-308", "nan",    "inf",  "true", "\"\"",        "[]",
-                                       "\"9 m\"", "\"1e9 kg\"", "[1]",   "{}",      "[0, 0, 0]", "99999999999", "\"box\"", "[[1]]",
-                                       "1979-05-27"};
+    static constexpr std::array values{"0",          "-1",    "1e308",     "-1e-308",   "nan",
+                                       "inf",        "true",  "\"\"",      "[]",        "\"9 m\"",
+                                       "\"1e9 kg\"", "[1]",   "{}",        "[0, 0, 0]", "99999999999",
+                                       "\"box\"",    "[[1]]", "1979-05-27"};
     std::vector<std::string> lines = lines_of(text);
     for (std::size_t changes = 1 + dice.below(3); changes > 0 && !lines.empty(); --changes) {
         const std::size_t at = dice.below(lines.size());
@@ -54,7 +56,8 @@ std::string spoilt(const std::string& text, Dice dice) {
                 lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(at));
                 break;
             case 1:
-                lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(dice.below(lines.size())), std::string(line));
+                lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(dice.below(lines.size())),
+                             std::string(line));
                 break;
             case 2:
                 if (!line.empty()) line[dice.below(line.size())] = static_cast<char>(1 + dice.below(255));
@@ -75,7 +78,8 @@ TEST(SpoiltScenes, AreRefusedAsScenesOrUnderstood) {
     std::uint64_t id = 0, refused = 0, understood = 0;
     std::vector<std::filesystem::path> scenes;
     for (const auto& folder : std::filesystem::directory_iterator(TALUS_SOURCE_DIR "/runs"))
-        if (std::filesystem::exists(folder.path() / "scene.toml")) scenes.push_back(folder.path() / "scene.toml");
+        if (std::filesystem::exists(folder.path() / "scene.toml"))
+            scenes.push_back(folder.path() / "scene.toml");
     std::sort(scenes.begin(), scenes.end());
     for (const std::filesystem::path& file : scenes) {
         std::string text = Scene::read_text(file);
@@ -97,7 +101,8 @@ TEST(SpoiltScenes, AreRefusedAsScenesOrUnderstood) {
             } catch (const std::exception& error) {
                 ADD_FAILURE() << error.what() << " in " << what;
             }
-            EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 20) << what;
+            EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 20)
+                << what;
         }
     }
     EXPECT_GT(refused, id / 4);
