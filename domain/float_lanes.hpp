@@ -20,8 +20,8 @@ inline FloatLanes load_first(const float* from, std::size_t count) {
 #endif
 }
 
-/// A sum over partners in sixteen partial sums, partner k in the one of k mod 16, and of these in a fixed order
-/// and in double: the same bits on every processor. Partners are added in order, from 0 on.
+/// A sum over partners in sixteen partial sums, partner k in the one of k mod 16, and of these in a fixed
+/// order and in double: the same bits on every processor. Partners are added in order, from 0 on.
 class FloatLaneSum {
   public:
     /// Adds the terms of partners k to k + float_lane_count - 1; zeros where there is none.
@@ -58,7 +58,8 @@ inline LaneBits negative_lanes(const FloatLanes& values) {
 #endif
 }
 
-/// Stores the lanes whose bit is set one after the other. All places of a set of lanes at `to` may be written.
+/// Stores the lanes whose bit is set one after the other. All places of a set of lanes at `to` may be
+/// written.
 inline void store_lanes(LaneBits bits, const FloatLanes& values, float* to) {
 #ifdef __AVX512VL__
     _mm512_storeu_ps(to, _mm512_maskz_compress_ps(static_cast<__mmask16>(bits), static_cast<__m512>(values)));
