@@ -23,12 +23,13 @@ WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, Par
     decomposition_.expect(particles_);
 }
 
-void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup&) {
+void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup) {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::mass, &field::density, &field::body, &field::acceleration,
              &water_field::density_rate, &field::pressure, &water_field::partner_velocity,
              &water_field::partner_volume, &water_field::partner_pressure, &water_field::partner_density})
         particles.add(*info);
+    if (setup.settings.shifting > 0) particles.add(water_field::shift_velocity);
 }
 
 double WaterSimulation::work() const {
@@ -63,6 +64,7 @@ void WaterSimulation::step() {
     water::kick(particles_, dt / 2);
     sph::move_walls(particles_, walls_at(time_ + dt / 2));
     sph::drift(particles_, dt);
+    water::shift(particles_, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);

@@ -15,7 +15,7 @@ using sph::Vector;
 
 /// What a scene's water has besides pressure; what it has not costs nothing.
 struct Terms {
-    bool artificial, viscous;
+    bool artificial, viscous, shifts;
 };
 
 /// In units of the radius of interaction R, the speed of sound c0 and the density at rest rho0.
@@ -39,6 +39,15 @@ class ForcePass {
         force_scale_ = kernel * c0 * c0 / radius;
         rate_scale_ = kernel * rho0 * c0 / radius;
         mass_scale_ = 1 / (rho0 * std::pow(radius, D));
+        if constexpr (terms.shifts) {
+            shift_ = sph::components_to_write<D>(particles, water_field::shift_velocity);
+            const double expected_speed = c0 / 10, spacing = 1 / settings.radius_in_spacings,
+                         away = 1 - spacing;
+            shift_scale_ = 2 * settings.shifting * kernel * expected_speed;
+            fullness_ = kernel;
+            nearest_ = static_cast<float>(1 / (std::pow(away, 4) * (1 + 4 * spacing)));
+            fastest_ = 0.5 * expected_speed;
+        }
         damping_ = static_cast<float>(settings.artificial_viscosity / Settings::support());
         friction_ = static_cast<float>(2 * settings.viscosity / (rho0 * c0 * radius));
         diffusion_ = static_cast<float>(2 * settings.density_diffusion / Settings::support());
@@ -62,21 +71,23 @@ class ForcePass {
         frame_.enter(cell);
         water_.clear(count_of(runs));
         wall_.clear(count_of(runs));
-        frame_.for_each_near(runs, [this](std::uint32_t k, std::size_t number,
-                                          const std::array<FloatLanes, D>& x, LaneBits bits) {
-            std::array<FloatLanes, value_count> values;
-            for (int d = 0; d < D; ++d) {
-                values[d] = x[d];
-                values[at_velocity + d] = load_first(velocity_[d] + k, number);
-            }
-            const FloatLanes volume = load_first(volume_ + k, number);
-            values[at_volume] = abs(volume);
-            values[at_pressure] = load_first(pressure_ + k, number);
-            values[at_density] = load_first(density_ + k, number);
-            const LaneBits is_wall = negative_lanes(volume);
-            if ((bits & ~is_wall) != 0) water_.append(bits & ~is_wall, values);
-            if ((bits & is_wall) != 0) wall_.append(bits & is_wall, values);
-        });
+        const auto all = [](std::uint32_t, std::size_t) { return ~LaneBits{0}; };
+        frame_.for_each_near(
+            runs, all,
+            [this](std::uint32_t k, std::size_t number, const std::array<FloatLanes, D>& x, LaneBits bits) {
+                std::array<FloatLanes, value_count> values;
+                for (int d = 0; d < D; ++d) {
+                    values[d] = x[d];
+                    values[at_velocity + d] = load_first(velocity_[d] + k, number);
+                }
+                const FloatLanes volume = load_first(volume_ + k, number);
+                values[at_volume] = abs(volume);
+                values[at_pressure] = load_first(pressure_ + k, number);
+                values[at_density] = load_first(density_ + k, number);
+                const LaneBits is_wall = negative_lanes(volume);
+                if ((bits & ~is_wall) != 0) water_.append(bits & ~is_wall, values);
+                if ((bits & is_wall) != 0) wall_.append(bits & is_wall, values);
+            });
         water_.pad();
         wall_.pad();
     }
@@ -88,6 +99,8 @@ class ForcePass {
     struct Sums {
         std::array<FloatLaneSum, D> force;
         FloatLaneSum rate;
+        std::array<FloatLaneSum, D> crowding;  // of shifting particles alone, as what follows
+        FloatLaneSum fullness;
     };
 
     template <bool of_wall>
@@ -100,9 +113,9 @@ class ForcePass {
                 r[d] = own.x[d] - load(from[d] + k);
                 v[d] = own.v[d] - load(from[at_velocity + d] + k);
             }
-            const FloatLanes r2 = dot(r, r), approach = dot(r, v);
-            const FloatLanes x = max(1 - sqrt(r2), FloatLanes(0.0F));
-            const FloatLanes weight = load(from[at_volume] + k) * (x * x * x);
+            const FloatLanes r2 = dot(r, r), approach = dot(r, v), distance = sqrt(r2);
+            const FloatLanes x = max(1 - distance, FloatLanes(0.0F)), x3 = x * x * x;
+            const FloatLanes weight = load(from[at_volume] + k) * x3;
             const FloatLanes last = load(from[at_density] + k);  // of walls whether they do not slip
             FloatLanes pressure = own.pressure + load(from[at_pressure] + k);
             if constexpr (terms.artificial) {
@@ -118,6 +131,13 @@ class ForcePass {
             FloatLanes rate = -own.density * approach;
             if constexpr (!of_wall) rate += diffusion_ * (last - own.excess);
             sums.rate.add(k, weight * rate);
+            if constexpr (terms.shifts) {
+                const FloatLanes closeness = nearest_ * (x3 * x) * (1 + 4 * distance),
+                                 squared = closeness * closeness,
+                                 push = weight * (1 + 0.2F * squared * squared);
+                for (int d = 0; d < D; ++d) sums.crowding[d].add(k, push * r[d]);
+                sums.fullness.add(k, weight * r2);
+            }
         }
     }
 
@@ -137,6 +157,17 @@ class ForcePass {
         for (int d = 0; d < D; ++d)
             acceleration_[d][i] = gravity_[d] + force_scale_ / density * sums.force[d].total();
         rate_[i] = rate_scale_ * sums.rate.total();
+        if constexpr (terms.shifts) shift(i, sums);
+    }
+
+    /// Nowhere near a free surface, where the sum of V_j r_ij . grad W_ij is not complete.
+    void shift(std::uint32_t i, const Sums& sums) {
+        constexpr double full = 0.9 * D;
+        std::array<double, D> u{};
+        if (fullness_ * sums.fullness.total() > full)
+            for (int d = 0; d < D; ++d) u[d] = shift_scale_ * sums.crowding[d].total();
+        const double speed = std::sqrt(dot(u, u)), most = speed > fastest_ ? fastest_ / speed : 1;
+        for (int d = 0; d < D; ++d) shift_[d][i] = most * u[d];
     }
 
     const std::array<double, 3> gravity_;
@@ -146,7 +177,9 @@ class ForcePass {
     const double* mass_;
     std::array<double*, D> acceleration_;
     double* rate_;
-    double force_scale_, rate_scale_, mass_scale_;
+    std::array<double*, D> shift_{};
+    double force_scale_, rate_scale_, mass_scale_, shift_scale_ = 0, fullness_ = 0, fastest_ = 0;
+    float nearest_ = 0;
     float damping_, friction_, diffusion_;
     Block<value_count> water_, wall_;
 };
@@ -159,15 +192,22 @@ void force_pass(ParticleSet& particles, const CellTable& table, Cells which, con
     const auto run = [&]<int D, Terms terms>() {
         sph::visit_cells(ForcePass<D, terms>(particles, settings), table, which, count);
     };
-    const auto in_dimension = [&]<int D>() {
+    const bool shifts = settings.shifting > 0;
+    const auto with_shifting = [&]<int D, bool shifting>() {
         if (artificial && viscous)
-            run.template operator()<D, Terms{true, true}>();
+            run.template operator()<D, Terms{true, true, shifting}>();
         else if (artificial)
-            run.template operator()<D, Terms{true, false}>();
+            run.template operator()<D, Terms{true, false, shifting}>();
         else if (viscous)
-            run.template operator()<D, Terms{false, true}>();
+            run.template operator()<D, Terms{false, true, shifting}>();
         else
-            run.template operator()<D, Terms{false, false}>();
+            run.template operator()<D, Terms{false, false, shifting}>();
+    };
+    const auto in_dimension = [&]<int D>() {
+        if (shifts)
+            with_shifting.template operator()<D, true>();
+        else
+            with_shifting.template operator()<D, false>();
     };
     if (particles.dimension() == 2)
         in_dimension.template operator()<2>();

@@ -1,5 +1,6 @@
 #include "physics/water/motion.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -8,16 +9,16 @@
 
 namespace talus::water {
 
-void kick(ParticleSet& particles, double time) {
-    const auto add = [&](double* to, const double* rate) {
-        for (std::size_t i = 0; i < particles.size(); ++i) to[i] += time * rate[i];
-    };
-    for (int a = 0; a < particles.dimension(); ++a)
-        add(particles.data(field::velocity, a), particles.data(field::acceleration, a));
-    add(particles.data(field::density), particles.data(water_field::density_rate));
-}
-
 namespace {
+
+void move_on(ParticleSet& particles, const Field<double>& what, const Field<double>& rate, double time) {
+    const int components = component_count(what.shape, particles.dimension());
+    for (int c = 0; c < components; ++c) {
+        double* to = particles.data(what, c);
+        const double* by = particles.data(rate, c);
+        for (std::size_t i = 0; i < particles.size(); ++i) to[i] += time * by[i];
+    }
+}
 
 /// The greatest of some values and whose it is.
 struct Greatest {
@@ -32,6 +33,16 @@ struct Greatest {
 
 }  // namespace
 
+void kick(ParticleSet& particles, double time) {
+    move_on(particles, field::velocity, field::acceleration, time);
+    move_on(particles, field::density, water_field::density_rate, time);
+}
+
+void shift(ParticleSet& particles, double time) {
+    if (particles.has(water_field::shift_velocity))
+        move_on(particles, field::position, water_field::shift_velocity, time);
+}
+
 sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings) {
     const double infinity = std::numeric_limits<double>::infinity();
     if (particles.size() == 0) return {infinity, 0, "no particles"};
@@ -42,14 +53,17 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
     std::array<const double*, 3> a{};
     for (int d = 0; d < 3; ++d)
         a[static_cast<std::size_t>(d)] = particles.data(field::acceleration, std::min(d, dimension - 1));
-    Greatest speed, acceleration2;
+    Greatest compression, acceleration2;
+    double greatest_density = 0;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
         acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
-        speed.take(settings.state.sound_speed_at(density[i]) + h * std::abs(rate[i]) / density[i], i);
+        compression.take(std::abs(rate[i]) / density[i], i);
+        greatest_density = std::max(greatest_density, density[i]);
     }
+    const double speed = settings.state.sound_speed_at(greatest_density) + h * compression.value;
     const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed,
-                 sound = settings.courant * h / (speed.value + damping),
+                 sound = settings.courant * h / (speed + damping),
                  accelerated = acceleration2.value > 0
                                    ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
                                    : infinity,
@@ -57,8 +71,8 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
                                ? viscous_share * h * h * settings.state.reference_density / settings.viscosity
                                : infinity;
     const std::uint64_t* id = particles.data(field::id);
-    if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
-    if (sound < accelerated) return {sound, id[speed.at], "sound"};
+    if (viscous < sound && viscous < accelerated) return {viscous, id[compression.at], "viscosity"};
+    if (sound < accelerated) return {sound, id[compression.at], "sound"};
     return {accelerated, id[acceleration2.at], "acceleration"};
 }
 

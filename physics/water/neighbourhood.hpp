@@ -13,35 +13,37 @@
 namespace talus::water {
 
 /// Values of particles side by side, the same value of one after the other in memory, in canonical order;
-/// behind the last one, up to a whole number of lanes, particles too far away to matter. The first D values
-/// are the place.
+/// behind the last one, up to a whole number of lanes, particles too far away to matter. The first values are
+/// the place.
 template <std::size_t count>
 class Block {
   public:
     void clear(std::size_t most) {
-        for (auto& column : columns_) column.reserve(most + 2 * float_lane_count);
+        room_ = (most + 2 * float_lane_count) / float_lane_count * float_lane_count;
+        values_.reserve(count * room_);
         size_ = 0;
     }
     /// Appends those of a set of lanes whose bits are set.
     void append(LaneBits bits, const std::array<FloatLanes, count>& values) {
-        for (std::size_t c = 0; c < count; ++c) store_lanes(bits, values[c], columns_[c].data() + size_);
+        float* to = values_.data() + size_;
+        for (std::size_t c = 0; c < count; ++c) store_lanes(bits, values[c], to + c * room_);
         size_ += static_cast<std::size_t>(std::popcount(bits));
     }
     void pad() {
         constexpr float far_away = 1e4F;  // in radii
         for (std::size_t c = 0; c < count; ++c)
-            std::fill_n(columns_[c].data() + size_, float_lane_count, c == 0 ? far_away : 0);
+            std::fill_n(values_.data() + c * room_ + size_, float_lane_count, c == 0 ? far_away : 0);
     }
     std::size_t size() const { return size_; }
     std::array<const float*, count> columns() const {
         std::array<const float*, count> pointers;
-        for (std::size_t c = 0; c < count; ++c) pointers[c] = columns_[c].data();
+        for (std::size_t c = 0; c < count; ++c) pointers[c] = values_.data() + c * room_;
         return pointers;
     }
 
   private:
-    std::array<AlignedArray<float>, count> columns_;
-    std::size_t size_ = 0;
+    AlignedArray<float> values_;
+    std::size_t room_ = 0, size_ = 0;
 };
 
 /// Places in units of the radius of interaction, relative to a particle of a cell.
@@ -77,21 +79,23 @@ class LocalFrame {
         return x;
     }
     /// Calls visit(k, number, x, bits) for all lanes of the runs' particles, k the first of `number` of them,
-    /// at places x, of which some are within reach of the box around the cell's particles: those whose bits
-    /// are set.
-    template <class Visit>
-    void for_each_near(std::span<const Run> runs, Visit&& visit) const {
+    /// at places x, of which some are wanted and within reach of the box around the cell's particles: those
+    /// whose bits are set. `wanted(k, number)` tells which are, by bits.
+    template <class Wanted, class Visit>
+    void for_each_near(std::span<const Run> runs, Wanted&& wanted, Visit&& visit) const {
         constexpr float reach2 = 1.00001F;  // rounding must leave out nobody
         for (const Run& run : runs)
             for (std::uint32_t k = run.begin; k < run.end; k += float_lane_count) {
                 const std::size_t number = run.end - k;
+                LaneBits bits = wanted(k, number);
+                if (bits == 0) continue;
                 const std::array<FloatLanes, D> x = places(k, number);
                 FloatLanes excess = -reach2;
                 for (int d = 0; d < D; ++d) {
                     const FloatLanes outside = max(max(-x[d], x[d] - extent_[d]), FloatLanes(0.0F));
                     excess += outside * outside;
                 }
-                LaneBits bits = negative_lanes(excess);
+                bits &= negative_lanes(excess);
                 if (number < float_lane_count) bits &= (LaneBits{1} << number) - 1;
                 if (bits != 0) visit(k, number, x, bits);
             }

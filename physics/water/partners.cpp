@@ -50,6 +50,13 @@ void prepare_walls(ParticleSet& particles, const Settings& settings, std::span<c
           *sticks = particles.data(water_field::partner_density);
     double* pressure = particles.data(field::pressure);
     const int dimension = particles.dimension();
+    std::array<const double*, 3> x{};
+    std::array<float*, 3> v{};
+    for (int a = 0; a < dimension; ++a) {
+        x[static_cast<std::size_t>(a)] = particles.data(field::position, a);
+        v[static_cast<std::size_t>(a)] = particles.data(water_field::partner_velocity, a);
+    }
+    const double unit = 1 / settings.state.sound_speed;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const sph::WallNow& wall = walls[body[i]];
         if (!wall.is_wall) continue;
@@ -57,15 +64,11 @@ void prepare_walls(ParticleSet& particles, const Settings& settings, std::span<c
         scaled[i] = 0;
         pressure[i] = 0;
         sticks[i] = wall.slips ? 0 : 1;
-        dem::Vector3<> place;
-        place.x = particles.data(field::position, 0)[i];
-        place.y = particles.data(field::position, 1)[i];
-        if (dimension > 2) place.z = particles.data(field::position, 2)[i];
-        const dem::Vector3<> v = (1 / settings.state.sound_speed) * wall.pose.velocity_at(place);
-        const std::array<double, 3> velocity{v.x, v.y, v.z};
-        for (int a = 0; a < dimension; ++a)
-            particles.data(water_field::partner_velocity, a)[i] =
-                static_cast<float>(velocity[static_cast<std::size_t>(a)]);
+        const dem::Vector3<> moves =
+            unit * wall.pose.velocity_at({x[0][i], x[1][i], dimension > 2 ? x[2][i] : 0.0});
+        v[0][i] = static_cast<float>(moves.x);
+        v[1][i] = static_cast<float>(moves.y);
+        if (dimension > 2) v[2][i] = static_cast<float>(moves.z);
     }
 }
 

@@ -31,7 +31,10 @@ void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, cons
 /// 0.01 h^2) (J. J. Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, eqs 4.1-4.2), viscosity of J. P.
 /// Morris, P. J. Fox, Y. Zhu, J. Comput. Phys. 136 (1997) 214, eq. 22, and diffusion of the density less that
 /// of water at rest, R_ij = rho0 g . r_ij/c0^2 (G. Fourtakas et al., Comput. Fluids 190 (2019) 346, eqs
-/// 12-14), between water alone. Walls that slip have no viscosity. Reads position and partner_* of partners.
+/// 12-14), between water alone. With shifting also
+/// shift_velocity, -4 h U sum_j V_j (1 + 0.2 (W_ij/W(spacing))^4) grad W_ij, U = c0/10, at most U/2, and none
+/// near a free surface: P. N. Sun et al., Comput. Methods Appl. Mech. Eng. 315 (2017) 25, eq. 23. Walls that
+/// slip have no viscosity. Reads position and partner_* of partners.
 void force_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                 sph::PassCount& count);
 

@@ -22,7 +22,6 @@ class WallPass {
           walls_(walls),
           position_(sph::components<D>(particles, field::position)),
           frame_(position_, settings.radius()),
-          mass_(particles.data(field::mass)),
           body_(particles.data(field::body)),
           velocity_(sph::components_to_write<D>(particles, water_field::partner_velocity)),
           volume_(particles.data(water_field::partner_volume)),
@@ -44,18 +43,20 @@ class WallPass {
     void gather(const CellEntry& cell, std::span<const Run> runs) {
         frame_.enter(cell);
         water_.clear(count_of(runs));
-        frame_.for_each_near(runs, [this](std::uint32_t k, std::size_t number,
-                                          const std::array<FloatLanes, D>& x, LaneBits bits) {
-            bits &= ~negative_lanes(load_first(volume_ + k, number));
-            if (bits == 0) return;
-            std::array<FloatLanes, value_count> values;
-            for (int d = 0; d < D; ++d) {
-                values[d] = x[d];
-                values[at_velocity + d] = load_first(velocity_[d] + k, number);
-            }
-            values[at_pressure] = load_first(partner_pressure_ + k, number);
-            water_.append(bits, values);
-        });
+        const auto is_water = [this](std::uint32_t k, std::size_t number) {
+            return negative_lanes(-load_first(volume_ + k, number));
+        };
+        frame_.for_each_near(
+            runs, is_water,
+            [this](std::uint32_t k, std::size_t number, const std::array<FloatLanes, D>& x, LaneBits bits) {
+                std::array<FloatLanes, value_count> values;
+                for (int d = 0; d < D; ++d) {
+                    values[d] = x[d];
+                    values[at_velocity + d] = load_first(velocity_[d] + k, number);
+                }
+                values[at_pressure] = load_first(partner_pressure_ + k, number);
+                water_.append(bits, values);
+            });
         water_.pad();
     }
 
@@ -91,15 +92,13 @@ class WallPass {
             velocity_[d][i] =
                 static_cast<float>(2 * own[d] / state.sound_speed - velocity[d].total() / total);
         partner_pressure_[i] = static_cast<float>(pressure_[i] / (state.reference_density * sound2));
-        const double radius = settings_.radius(), size = D == 2 ? radius * radius : radius * radius * radius;
-        volume_[i] = static_cast<float>(-mass_[i] / (state.density(pressure_[i]) * size));
+        volume_[i] /= 1 + partner_pressure_[i];  // as density is nearly 1 + p/(rho0 c0^2)
     }
 
     const Settings& settings_;
     std::span<const sph::WallNow> walls_;
     std::array<const double*, D> position_;
     LocalFrame<D> frame_;
-    const double* mass_;
     const std::uint8_t* body_;
     std::array<float*, D> velocity_;
     float *volume_, *partner_pressure_;
