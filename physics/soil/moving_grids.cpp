@@ -1,12 +1,11 @@
 #include "physics/soil/moving_grids.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "domain/partners.hpp"
 #include "domain/soil_fields.hpp"
-#include "physics/soil/hencky.hpp"
+#include "physics/soil/moving_columns.hpp"
 #include "physics/soil/state_columns.hpp"
 #include "physics/sph/kernels.hpp"
 
@@ -22,71 +21,6 @@ constexpr double surface_begins = 0.4, surface_is_full = 0.8;
 /// Elements whose mass at a node exceeds its own this many times give it their inertia: where soil has come
 /// apart few nodes have many elements, whose stiffness would be too much for the time step.
 constexpr double most_elements = 1.5;
-
-template <int D>
-using Vector = Eigen::Matrix<double, D, 1>;
-template <int D>
-using Matrix = Eigen::Matrix<double, D, D>;
-
-template <int D, class T>
-Vector<D> vector_at(const std::array<T*, D>& columns, std::size_t i) {
-    Vector<D> found;
-    for (int a = 0; a < D; ++a) found[a] = columns[static_cast<std::size_t>(a)][i];
-    return found;
-}
-
-template <int D>
-Matrix<D> symmetric_at(const std::array<const double*, sph::symmetric_count<D>>& columns, std::size_t i) {
-    Matrix<D> found;
-    for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b)
-            found(a, b) = columns[static_cast<std::size_t>(sph::symmetric_index<D>(a, b))][i];
-    return found;
-}
-
-template <int D>
-Matrix<D> tensor_at(const std::array<const double*, D * D>& columns, std::size_t i) {
-    Matrix<D> found;
-    for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) found(a, b) = columns[static_cast<std::size_t>(a * D + b)][i];
-    return found;
-}
-
-template <int D>
-void put_tensor(ParticleSet& particles, const Field<double>& field, std::size_t i, const Matrix<D>& value) {
-    for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) particles.data(field, a * D + b)[i] = value(a, b);
-}
-
-/// Columns of a stress in StateColumns, the lateral one among them.
-template <int D>
-constexpr int stress_count = sph::symmetric_count<D> + (D < 3 ? 1 : 0);
-
-template <int D>
-std::array<double*, stress_count<D>> stress_columns_of(const StateColumns<D>& columns) {
-    std::array<double*, stress_count<D>> all{};
-    std::copy(columns.stress.begin(), columns.stress.end(), all.begin());
-    if (D < 3) all.back() = columns.lateral;
-    return all;
-}
-
-/// Linear fits of the stress, value and slopes, in elements; empty unless it is smoothed.
-template <int D>
-std::vector<double*> stress_fits(ParticleSet& particles) {
-    std::vector<double*> fits;
-    if (!particles.has(soil_field::stress_fit)) return fits;
-    for (int c = 0; c < (1 + D) * stress_count<D>; ++c)
-        fits.push_back(particles.data(soil_field::stress_fit, c));
-    return fits;
-}
-
-/// The increment of the deformation gradient that a velocity gradient makes in a time.
-template <int D>
-Eigen::Matrix3d deformation(const Matrix<D>& gradient, double time) {
-    Eigen::Matrix3d f = Eigen::Matrix3d::Identity();
-    f.template topLeftCorner<D, D>() += time * gradient;
-    return f;
-}
 
 /// Least squares over the nodes around an element.
 template <int D>
@@ -257,30 +191,6 @@ class ElementPass {
     ElementFit<D> fit_{};
 };
 
-/// What elements hold for nodes.
-template <int D>
-struct ElementColumns {
-    explicit ElementColumns(const ParticleSet& particles)
-        : position(sph::components<D>(particles, field::position)),
-          velocity(sph::components<D>(particles, soil_field::velocity)),
-          stress(sph::components<D * D>(particles, soil_field::nominal_stress)),
-          slope(sph::components<D * D>(particles, soil_field::velocity_slope)),
-          centre(sph::components<D>(particles, soil_field::fit_centre)),
-          inverse(sph::components<sph::symmetric_count<D>>(particles, soil_field::fit_inverse)),
-          weight(particles.data(soil_field::fit_weight)),
-          volume(particles.data(soil_field::volume)),
-          mass(particles.data(field::mass)),
-          h(particles.data(field::smoothing_length)),
-          grid(particles.data(soil_field::grid)) {}
-
-    std::array<const double*, D> position, velocity;
-    std::array<const double*, D * D> stress, slope;
-    std::array<const double*, D> centre;
-    std::array<const double*, sph::symmetric_count<D>> inverse;
-    const double *weight, *volume, *mass, *h;
-    const std::uint8_t* grid;
-};
-
 template <int D>
 class NodePass {
   public:
@@ -390,104 +300,6 @@ class NodePass {
     std::vector<double*> stress_fits_;
 };
 
-template <int D>
-void measure_elements_in(ParticleSet& particles, Cells which, const StencilRows& rows) {
-    const auto middle = sph::components<D>(particles, soil_field::middle_velocity);
-    const auto velocity = sph::components_to_write<D>(particles, soil_field::velocity);
-    for (std::uint32_t row = rows.begin(which); row < rows.end(which); ++row) {
-        const std::uint32_t i = rows.targets[row];
-        Vector<D> mean = Vector<D>::Zero();
-        Matrix<D> slope = Matrix<D>::Zero();
-        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k) {
-            const double* weight = rows.weights.data() + std::size_t{k} * (D + 1);
-            for (int a = 0; a < D; ++a) {
-                const double v = middle[a][rows.partners[k]];
-                mean[a] += weight[0] * v;
-                for (int b = 0; b < D; ++b) slope(a, b) += weight[1 + b] * v;
-            }
-        }
-        // Without a gradient an element moves on as it did.
-        if (rows.first[row] != rows.first[row + 1])
-            for (int a = 0; a < D; ++a) velocity[a][i] = mean[a];
-        put_tensor<D>(particles, soil_field::velocity_slope, i, slope);
-    }
-}
-
-/// Axes along which a node's velocity is imposed.
-std::array<bool, 3> held_axes(std::uint32_t held, std::span<const BoundaryCondition> conditions) {
-    std::array<bool, 3> axes{};
-    for (std::size_t c = 0; c < conditions.size() && held != 0; ++c)
-        for (std::size_t a = 0; a < 3 && (held >> c & 1); ++a) axes[a] = axes[a] || conditions[c].held[a];
-    return axes;
-}
-
-template <int D>
-void deform_nodes_in(ParticleSet& particles, Cells which, const StepSettings& settings,
-                     std::span<const BoundaryCondition> conditions, const StencilRows& rows,
-                     const MovingMemory& memory) {
-    const ElementColumns<D> of(particles);
-    const StateColumns<D> columns(particles);
-    const auto middle = sph::components<D>(particles, soil_field::middle_velocity);
-    const auto position = sph::components_to_write<D>(particles, field::position);
-    const auto displacement = sph::components_to_write<D>(particles, soil_field::displacement);
-    const auto surface = sph::components_to_write<D>(particles, soil_field::surface);
-    const std::uint8_t* body = particles.data(field::body);
-    const double dt = settings.time_step;
-    for (std::uint32_t row = rows.begin(which); row < rows.end(which); ++row) {
-        const std::uint32_t i = rows.targets[row];
-        Vector<D> seen = Vector<D>::Zero();
-        Matrix<D> slope = Matrix<D>::Zero();
-        const double volume = memory.volume[row];
-        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k) {
-            const double* weight = rows.weights.data() + std::size_t{k} * (D + 1);
-            const std::uint32_t e = rows.partners[k];
-            const double share = weight[0] * of.volume[e] / volume;
-            const Matrix<D> of_element = tensor_at<D>(of.slope, e);
-            slope += share * of_element;
-            seen +=
-                share * (vector_at<D>(of.velocity, e) + of_element * Eigen::Map<const Vector<D>>(weight + 1));
-        }
-        const bool alone = !(volume > 0);
-        const std::array<bool, 3> held = held_axes(particles.data(soil_field::conditions)[i], conditions);
-        for (int a = 0; a < D; ++a) {
-            const bool as_it_is = alone || held[static_cast<std::size_t>(a)];
-            const double way = dt * (as_it_is ? middle[a][i] : seen[a]);
-            position[a][i] += way;
-            displacement[a][i] += way;
-        }
-        const Elasticity& elasticity = settings.materials[body[i]].elasticity;
-        if (alone) {  // nothing is left to press on it
-            columns.put_stress(i, {});
-            continue;
-        }
-        if constexpr (D == 1) {
-            const double gradient[1][1] = {{slope(0, 0)}};
-            columns.add_elastic(i, elasticity, gradient, dt);
-        } else {
-            const Eigen::Matrix3d f = deformation<D>(slope, dt);
-            columns.put_stress(i, hencky_stress(elasticity, columns.stress_at(i), f));
-            const Vector<D> before = vector_at<D>(surface, i);
-            if (before.isZero(0)) continue;
-            const Matrix<D> plane = f.template topLeftCorner<D, D>();
-            const Vector<D> after = plane.determinant() * (plane.inverse().transpose() * before);
-            for (int a = 0; a < D; ++a) surface[a][i] = after[a];
-        }
-    }
-}
-
-template <int D>
-void move_elements_in(ParticleSet& particles, const StencilRows& rows, double time_step) {
-    const ElementColumns<D> of(particles);
-    const auto position = sph::components_to_write<D>(particles, field::position);
-    double* volume = particles.data(soil_field::volume);
-    for (const std::uint32_t i : rows.targets) {
-        const Matrix<D> slope = tensor_at<D>(of.slope, i);
-        const Vector<D> way = time_step * (vector_at<D>(of.velocity, i) - slope * vector_at<D>(of.centre, i));
-        for (int a = 0; a < D; ++a) position[a][i] += way[a];
-        volume[i] *= deformation<D>(slope, time_step).determinant();
-    }
-}
-
 }  // namespace
 
 void add_moving_fields(ParticleSet& particles, bool smooth_stress) {
@@ -503,21 +315,6 @@ void add_moving_fields(ParticleSet& particles, bool smooth_stress) {
         });
 }
 
-void list_targets(const ParticleSet& particles, const CellTable& table, Stencils& stencils) {
-    const std::uint8_t* grid = particles.data(soil_field::grid);
-    stencils.to_nodes.clear();
-    stencils.to_elements.clear();
-    for (const Cells which : {Cells::interior, Cells::boundary}) {
-        table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run>, std::size_t) {
-            for (std::uint32_t i = cell.begin; i < cell.end; ++i)
-                (grid[i] == node_grid ? stencils.to_nodes : stencils.to_elements).targets.push_back(i);
-        });
-        if (which == Cells::interior)
-            for (StencilRows* rows : {&stencils.to_nodes, &stencils.to_elements})
-                rows->interior = rows->targets.size();
-    }
-}
-
 void predict_elements(ParticleSet& particles, const CellTable& table, Cells which,
                       const StepSettings& settings, StencilRows& rows) {
     sph::with_dimension(particles, [&](auto dimension) {
@@ -530,32 +327,6 @@ void accelerate_nodes(ParticleSet& particles, const CellTable& table, Cells whic
     sph::with_dimension(particles, [&](auto dimension) {
         NodePass<dimension()>(particles, table, settings, rows, memory).run(which);
     });
-}
-
-void centre_velocities(ParticleSet& particles, const Stencils& stencils) {
-    for (int a = 0; a < particles.dimension(); ++a) {
-        const double* after = particles.data(soil_field::velocity, a);
-        double* middle = particles.data(soil_field::middle_velocity, a);
-        stencils.for_each_node([&](std::uint32_t i) { middle[i] = 0.5 * (middle[i] + after[i]); });
-    }
-}
-
-void measure_elements(ParticleSet& particles, Cells which, const StencilRows& rows) {
-    sph::with_dimension(particles,
-                        [&](auto dimension) { measure_elements_in<dimension()>(particles, which, rows); });
-}
-
-void deform_nodes(ParticleSet& particles, Cells which, const StepSettings& settings,
-                  std::span<const BoundaryCondition> conditions, const StencilRows& rows,
-                  const MovingMemory& memory) {
-    sph::with_dimension(particles, [&](auto dimension) {
-        deform_nodes_in<dimension()>(particles, which, settings, conditions, rows, memory);
-    });
-}
-
-void move_elements(ParticleSet& particles, const StencilRows& rows, double time_step) {
-    sph::with_dimension(particles,
-                        [&](auto dimension) { move_elements_in<dimension()>(particles, rows, time_step); });
 }
 
 }  // namespace talus::soil

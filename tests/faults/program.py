@@ -69,6 +69,35 @@ class BadInput(Case):
             options = [option for setting in settings for option in ("--set", setting)]
             self.assert_fails(talus("check", scene, "--quick", *options, ranks=0), 2, pattern)
 
+    def test_soil_at_the_start_and_in_large_deformation_that_cannot_be(self):
+        column = RUNS / "saturated_column"
+        text = (RUNS / "vertical_cut" / "scene.toml").read_text() + """
+[initial_stress]
+surface = 20
+lateral_ratio = 0.5
+[materials.light]
+density = 1000
+youngs_modulus = 1e7
+poisson_ratio = 0.3
+"""
+        for scene, setting, pattern in (
+                (self.scene(text), "body[1].material=light", r"initial_stress\.surface.*bodies of one density only"),
+                (column, "soil.deformation=large", r"deformation.*small strain only"),
+                (RUNS / "vertical_cut", "soil.deformation=huge", r"deformation.*large"),
+                (RUNS / "vertical_cut", "soil.smoothing=2", r"smoothing")):
+            self.assert_fails(talus("check", scene, "--quick", "--set", setting, ranks=0), 2, pattern)
+
+    def test_soil_goes_on_with_its_own_boundaries_and_grids_only(self):
+        options = ["run", RUNS / "vertical_cut", "--quick", "--out", self.out]
+        first = talus(*options, "--steps", "3")
+        self.assertEqual(first.returncode, 0, first.stdout + first.stderr)
+        for setting, pattern in (("boundary[1].name=other", r"boundaries base.*this one has.*other"),
+                                 ("boundary[1].kind=fixed", r"boundaries base"),
+                                 ("soil.courant=0.5", "time step"),
+                                 ("soil.deformation=large", "surface|time step")):
+            done = talus(*options, "--steps", "5", "--restart", "latest", "--set", setting)
+            self.assert_fails(done, 3, pattern)
+
     def test_saturated_soil_with_a_tight_face_that_nothing_holds(self):
         done = talus("check", RUNS / "saturated_stratum", "--quick", "--set", "boundary[4].kind=traction",
                      "--set", "boundary[4].traction=[0,0]", "--set", "boundary[4].name=other", ranks=0)

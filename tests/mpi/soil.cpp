@@ -11,7 +11,7 @@
 namespace talus::test {
 namespace {
 
-constexpr int steps = 40;
+constexpr int steps = 20;
 
 constexpr const char* layers = R"(dimension = 2
 [soil]
@@ -213,7 +213,7 @@ TEST_P(SoilSameBits, WhoeverOwnsWhat) {
 TEST_P(SoilSameBits, AfterInterruption) {
     const Communicator world(MPI_COMM_WORLD);
     const SoilScene scene = GetParam()();
-    for (const int stop : {1, 23}) {
+    for (const int stop : {1, 13}) {
         SoilSimulation first = prepare(world, scene, state_at_start(scene), {});
         first.start();
         for (int k = 0; k < stop; ++k) first.step();

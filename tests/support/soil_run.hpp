@@ -20,4 +20,9 @@ void run_soil(const Communicator& comm, const SoilScene& scene,
 /// Nodes of this rank in no order: their indices.
 std::vector<std::size_t> soil_nodes(const ParticleSet& particles);
 
+/// Of a sample with a weak spot (runs/shear_band): angle of the band between that and the other side to the
+/// direction of the lateral, lesser stress, in degrees: of a line through the viscoplastic strain.
+/// Collective.
+double band_angle(const Communicator& comm, const SoilSimulation& simulation);
+
 }  // namespace talus::test
