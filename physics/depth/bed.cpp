@@ -93,7 +93,8 @@ void meet_other_phase(ParticleSet& particles, const TwoPhase& phases) {
         gravity[i] = wave_speed[i] * wave_speed[i] / height[i];
         const double greater = is_water[i] != 0 ? 1 + 2 * ratio : 1 + (1 - phases.buoyancy()) * ratio;
         factor[i] *= greater;
-        // The fastest wave is that of both together; from column to column only the pressure within a phase acts.
+        // The fastest wave is that of both together; from column to column only the pressure within a phase
+        // acts.
         wave_speed[i] *= std::sqrt(std::max(greater, 1 + ratio));
     }
 }

@@ -84,7 +84,8 @@ class RelativeVelocityPass {
         exchange_[i] = there > 0 ? exchanged(is_water ? there : here, is_water ? here : there) : 0;
     }
 
-    /// Of an implicit step: the relative velocity falls by the factor 1/(1 + time (1/(rho_s h_s) + 1/(rho_w h_w)) C h).
+    /// Of an implicit step: the relative velocity falls by the factor 1/(1 + time (1/(rho_s h_s) + 1/(rho_w
+    /// h_w)) C h).
     double exchanged(double solid_sum, double water_sum) const {
         const TwoPhase& phases = *settings_.two_phase;
         const double solid = factor_ * solid_sum, water = factor_ * water_sum;
@@ -138,8 +139,9 @@ class DragPass {
     static constexpr std::size_t place_relative = D, place_velocity = 2 * D, place_volume = 3 * D,
                                  place_phase = 3 * D + 1, place_exchange = 3 * D + 2,
                                  place_inverse_s = 3 * D + 3, record_size = 3 * D + 4;
-    /// Of the velocity between two columns themselves; the rest of the drag is that between the means around them.
-    /// Means leave alone what differs from column to column; all of it would be a viscosity where drag is strong.
+    /// Of the velocity between two columns themselves; the rest of the drag is that between the means around
+    /// them. Means leave alone what differs from column to column; all of it would be a viscosity where drag
+    /// is strong.
     static constexpr double own_share = 0.3;
     static constexpr auto finish = [](const sph::Neighbours&, auto& values) {
         values[place_inverse_s] = 1 / values[place_inverse_s];
@@ -155,17 +157,17 @@ class DragPass {
             sph::Vector<Lanes, D> r;
             for (std::size_t d = 0; d < D; ++d) r[d] = own[d] - other[d];
             const Lanes r2 = sph::dot(r, r);
-            const Lanes mean = 0.5 * (kernel_.value(r2, own[place_inverse_s]) +
-                                      kernel_.value(r2, other[place_inverse_s]));
-            const Lanes unlike = select(own[place_phase] == other[place_phase], Lanes(0.0),
-                                        other[place_volume] * mean *
-                                            min(own[place_exchange], other[place_exchange]));
+            const Lanes mean =
+                0.5 * (kernel_.value(r2, own[place_inverse_s]) + kernel_.value(r2, other[place_inverse_s]));
+            const Lanes unlike =
+                select(own[place_phase] == other[place_phase], Lanes(0.0),
+                       other[place_volume] * mean * min(own[place_exchange], other[place_exchange]));
             const Lanes weight = select(first_lanes(partners.size() - k), unlike, Lanes(0.0));
-            for (std::size_t d = 0; d < D; ++d)
-                {
+            for (std::size_t d = 0; d < D; ++d) {
                 const Lanes of_means = 0.5 * (own[place_relative + d] + other[place_relative + d]),
                             between = own[place_velocity + d] - other[place_velocity + d];
-                gain[d].add(k, weight * ((1 - own_share) * of_means + (is_water ? own_share : -own_share) * between));
+                gain[d].add(
+                    k, weight * ((1 - own_share) * of_means + (is_water ? own_share : -own_share) * between));
             }
         }
         const double share = factor_ / settings_.two_phase->density(is_water);

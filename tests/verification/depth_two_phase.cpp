@@ -14,7 +14,8 @@
 #include "tests/support/depth_run.hpp"
 #include "tests/support/scene_run.hpp"
 
-/// Solid and water against closed forms: how drag ends, flows without it, and what they become when it is strong.
+/// Solid and water against closed forms: how drag ends, flows without it, and what they become when it is
+/// strong.
 namespace talus::test {
 namespace {
 
@@ -77,8 +78,8 @@ double mean_velocity(const DepthSimulation& flow, bool is_water) {
     return sum / volume;
 }
 
-// The relative velocity falls by exp(-t/tau), 1/tau = (1/(rho_s h_s) + 1/(rho_w h_w)) C h with C = n phi (rho_s -
-// rho_w) g/(V_T n^m). Implicit steps: first order.
+// The relative velocity falls by exp(-t/tau), 1/tau = (1/(rho_s h_s) + 1/(rho_w h_w)) C h with C = n phi
+// (rho_s - rho_w) g/(V_T n^m). Implicit steps: first order.
 TEST(DepthTwoPhase, DragEndsTheRelativeVelocity) {
     const Communicator comm(MPI_COMM_SELF);
     Layer layer;
@@ -90,14 +91,15 @@ TEST(DepthTwoPhase, DragEndsTheRelativeVelocity) {
     for (const double courant : {0.01, 0.005}) {
         DepthScene scene = scene_of(layer);
         scene.simulation.settings.courant = courant;
-        DepthSimulation flow = moving(comm, scene, [](bool is_water, double) { return is_water ? 2.0 : -1.0; });
+        DepthSimulation flow =
+            moving(comm, scene, [](bool is_water, double) { return is_water ? 2.0 : -1.0; });
         const double momentum = flow.totals().momentum[0];
         while (flow.time() * rate < 1) flow.step();
         const double relative = mean_velocity(flow, true) - mean_velocity(flow, false),
                      exact = 3 * std::exp(-rate * flow.time());
         errors.push_back(std::abs(relative / exact - 1));
-        fmt::print("drag: relative velocity {:.6f} of 3 m/s after {:.4f} s, exact {:.6f}\n", relative, flow.time(),
-                   exact);
+        fmt::print("drag: relative velocity {:.6f} of 3 m/s after {:.4f} s, exact {:.6f}\n", relative,
+                   flow.time(), exact);
         EXPECT_NEAR(flow.totals().momentum[0], momentum, 1e-12 * 2 * layer.weight(true) * layer.length);
     }
     EXPECT_LT(errors.back(), 0.01);
@@ -126,8 +128,8 @@ std::array<Wave, 2> waves(const Layer& layer) {
     return found;
 }
 
-// A standing wave of each kind stops after a quarter of a period. The slow one is driven by a small difference of
-// great forces: the bound is 1.2 times what was measured for it.
+// A standing wave of each kind stops after a quarter of a period. The slow one is driven by a small
+// difference of great forces: the bound is 1.2 times what was measured for it.
 TEST(DepthTwoPhase, WavesWithoutDragHaveTheirSpeeds) {
     const Communicator comm(MPI_COMM_SELF);
     Layer layer;
@@ -165,17 +167,18 @@ TEST(DepthTwoPhase, WavesWithoutDragHaveTheirSpeeds) {
                 time_before = flow.time();
             }
         }
-        fmt::print("wave of {:.4f} m/s: error of the speed {:.2e}, {:.2e}\n", std::sqrt(wave.speed2), errors[0],
-                   errors[1]);
+        fmt::print("wave of {:.4f} m/s: error of the speed {:.2e}, {:.2e}\n", std::sqrt(wave.speed2),
+                   errors[0], errors[1]);
         EXPECT_LT(errors.back(), 0.075);
         EXPECT_LT(errors.back(), 0.6 * errors.front());
     }
 }
 
-// Down a slope: water rubs on the bed after Manning, solid after Coulomb with its weight less buoyancy. All of
-// the weight along the slope is borne by both, which gives the water's velocity, and the water's own by friction
-// and drag, which gives that of the solid. In a step the bed acts before drag does: an error of first order. What drag is
-// made of, the power 3.65 of the share of water, is that of kernel sums, right to 0.3 %.
+// Down a slope: water rubs on the bed after Manning, solid after Coulomb with its weight less buoyancy. All
+// of the weight along the slope is borne by both, which gives the water's velocity, and the water's own by
+// friction and drag, which gives that of the solid. In a step the bed acts before drag does: an error of
+// first order. What drag is made of, the power 3.65 of the share of water, is that of kernel sums, right to
+// 0.3 %.
 TEST(DepthTwoPhase, SteadyFlowDownASlope) {
     const Communicator comm(MPI_COMM_SELF);
     Layer layer;
@@ -190,12 +193,12 @@ TEST(DepthTwoPhase, SteadyFlowDownASlope) {
     const double weight = gravity * (layer.weight(true) + layer.weight(false)),
                  rubbing = 0.1 * gravity * layer.solid() * (2700 - 1000);
     const double bed = weight * layer.slope - rubbing;
-    const double water =
-        std::sqrt(bed * std::cbrt(layer.water()) / (1000 * gravity * 0.05 * 0.05));
+    const double water = std::sqrt(bed * std::cbrt(layer.water()) / (1000 * gravity * 0.05 * 0.05));
     const double drag = 0.4 * 0.6 * 1700 * gravity / (200 * std::pow(0.4, 3.65));
     const double past = (gravity * layer.weight(true) * layer.slope - bed) / drag;
     fmt::print("steady: water {:.6f}, exact {:.6f} m/s; relative {:.6f}, exact {:.6f} m/s\n",
-               mean_velocity(flow, true), water, mean_velocity(flow, true) - mean_velocity(flow, false), past);
+               mean_velocity(flow, true), water, mean_velocity(flow, true) - mean_velocity(flow, false),
+               past);
     EXPECT_NEAR(mean_velocity(flow, true), water, 0.002 * water);
     EXPECT_NEAR(mean_velocity(flow, true) - mean_velocity(flow, false), past, 0.02 * std::abs(past));
 }
@@ -215,8 +218,9 @@ TEST(DepthTwoPhase, DrySolidRubsWithAllItsWeight) {
 DepthScene dam(const Communicator& comm, int columns, const std::vector<std::string>& more) {
     std::vector<std::string> options{
         "two_phase.solid_density=2700",
-        fmt::format(R"(release=[{{shape="box", lower=[-20], upper=[0], depth=1, particles={}, solid_fraction=0.6}}])",
-                    columns)};
+        fmt::format(
+            R"(release=[{{shape="box", lower=[-20], upper=[0], depth=1, particles={}, solid_fraction=0.6}}])",
+            columns)};
     options.insert(options.end(), more.begin(), more.end());
     return depth_scene(comm, std::filesystem::path(TALUS_SOURCE_DIR) / "runs/dam_break", options);
 }
@@ -230,15 +234,17 @@ TEST(DepthTwoPhase, StrongDragIsASingleMaterial) {
         const DepthResult flow = run_depth(comm, dam(comm, columns, {"two_phase.settling_velocity=1e-9"}));
         const std::size_t half = flow.x.size() / 2;  // the solid first, then the water
         double apart = 0;
-        for (std::size_t k = 0; k < half; ++k) apart = std::max(apart, std::abs(flow.x[k] - flow.x[k + half]));
+        for (std::size_t k = 0; k < half; ++k)
+            apart = std::max(apart, std::abs(flow.x[k] - flow.x[k + half]));
         const auto share = [&](std::size_t k) { return k < half ? 0.6 : 0.4; };
         depths.push_back(flow.mean_error(
-            [&](std::size_t k) { return flow.depth[k] / share(k) - exact.at(flow.x[k], flow.time).depth; }, -15,
-            15));
+            [&](std::size_t k) { return flow.depth[k] / share(k) - exact.at(flow.x[k], flow.time).depth; },
+            -15, 15));
         const double speed = flow.mean_error(
             [&](std::size_t k) { return flow.u[k] - exact.at(flow.x[k], flow.time).velocity; }, -15, 15);
-        fmt::print("strong drag: {} columns, L1 of depth {:.2e} m, of velocity {:.2e} m/s, apart by {:.2e} m\n",
-                   half, depths.back(), speed, apart);
+        fmt::print(
+            "strong drag: {} columns, L1 of depth {:.2e} m, of velocity {:.2e} m/s, apart by {:.2e} m\n",
+            half, depths.back(), speed, apart);
         if (columns == 800) {
             EXPECT_LT(speed, 0.02);
         }
@@ -247,17 +253,20 @@ TEST(DepthTwoPhase, StrongDragIsASingleMaterial) {
     EXPECT_GT(order_of(depths.front(), depths.back()) / 2, 0.7);
 }
 
-// Where only one phase is, it is a dam break of that alone, whatever the drag: solid on dry ground, water the same.
+// Where only one phase is, it is a dam break of that alone, whatever the drag: solid on dry ground, water the
+// same.
 TEST(DepthTwoPhase, EachAloneIsRitters) {
     const Communicator comm(MPI_COMM_SELF);
     const reference::DamBreak exact(1, 0, gravity);
     for (const char* fraction : {"1", "0"}) {
-        const DepthResult flow = run_depth(comm, dam(comm, 400,
-                                                     {"two_phase.settling_velocity=0.1",
-                                                      fmt::format("release[0].solid_fraction={}", fraction)}));
-        EXPECT_LT(flow.mean_error(
-                      [&](std::size_t k) { return flow.depth[k] - exact.at(flow.x[k], flow.time).depth; }, -15, 15),
-                  4e-3);
+        const DepthResult flow = run_depth(
+            comm,
+            dam(comm, 400,
+                {"two_phase.settling_velocity=0.1", fmt::format("release[0].solid_fraction={}", fraction)}));
+        EXPECT_LT(
+            flow.mean_error(
+                [&](std::size_t k) { return flow.depth[k] - exact.at(flow.x[k], flow.time).depth; }, -15, 15),
+            4e-3);
     }
 }
 
