@@ -121,6 +121,10 @@ TerrainGrid parse_ascii_grid(std::string_view text) {
     if (header["yllcorner"]) grid.origin[1] += grid.spacing[1] / 2;
     const std::optional<double> nodata = header["nodata_value"];
 
+    const std::size_t most = text.size() / 2 + 1;  // a digit and a space each
+    if (grid.columns > most / grid.rows)
+        throw std::runtime_error(fmt::format("its header says {} x {} values; its {} characters hold fewer",
+                                             grid.columns, grid.rows, text.size()));
     grid.elevations.resize(grid.columns * grid.rows);
     for (std::size_t row = 0; row < grid.rows; ++row)
         for (std::size_t column = 0; column < grid.columns; ++column, word = words.next()) {

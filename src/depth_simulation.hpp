@@ -121,7 +121,7 @@ class DepthSimulation {
     ParticleSet particles_;
     Decomposition decomposition_;
     Outflow outflow_;
-    VaryingGrid grid_;
+    VaryingGrid grid_{4};  ///< few columns have the largest radius: small cells list fewer candidates
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     sph::PassCount pass_count_;

@@ -5,7 +5,6 @@
 namespace talus {
 
 namespace {
-constexpr int cells_per_radius = 1;
 constexpr double room_to_grow = 1.3;  // of the largest smoothing length in a step
 }  // namespace
 
@@ -18,7 +17,7 @@ bool VaryingGrid::fit(const Box& box, double needed, bool varies) {
                 radius = std::max(needed, std::min(radius, box.length(axis)));
     }
     if (grid_ && radius == radius_) return false;
-    grid_ = std::make_unique<CellGrid>(box, radius, cells_per_radius);
+    grid_ = std::make_unique<CellGrid>(box, radius, cells_per_radius_);
     radius_ = radius;
     return true;
 }

@@ -6,6 +6,7 @@
 #include "src/run/depth_evolution.hpp"
 #include "src/run/families.hpp"
 #include "src/run/options.hpp"
+#include "src/run/rung_advice.hpp"
 
 namespace talus {
 
@@ -14,6 +15,7 @@ int check_depth_scene(const Communicator& comm, const Scene& scene) {
     evolution.create({});
     evolution.start();
     const double first_step = evolution.time_step();
+    const DepthTotals start = evolution.simulation().totals();
     const auto began = std::chrono::steady_clock::now();
     evolution.step();
     const double seconds =
@@ -32,6 +34,7 @@ int check_depth_scene(const Communicator& comm, const Scene& scene) {
                std::ceil(steps), setup.output.end_time);
     fmt::print("estimated cost: {:.3g} s a step on {} ranks, {:.3g} minutes for so many steps\n", seconds,
                comm.size(), seconds * steps / 60);
+    fmt::print("cheapest model that serves: {}\n", rung_advice(setup, start));
     return exit_done;
 }
 

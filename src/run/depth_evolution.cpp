@@ -24,14 +24,16 @@ DepthEvolution::DepthEvolution(const Communicator& comm, const Scene& scene, std
 std::vector<std::string> DepthEvolution::warnings() const {
     constexpr double gentle = 0.1;  // beyond it the vertical form is wrong by a percent
     const Terrain& terrain = *setup_.simulation.terrain;
-    if (setup_.simulation.settings.form == depth::Form::bed_fitted || !terrain.is_plane()) return {};
+    std::vector<std::string> found = setup_.notes;
+    if (setup_.simulation.settings.form == depth::Form::bed_fitted || !terrain.is_plane()) return found;
     const auto slope = terrain.slope(0, 0);
     const double steepness = std::hypot(slope[0], slope[1]);
-    if (steepness <= gentle) return {};
-    return {
-        fmt::format("the bed has a slope of {:.3g}, for which depth.form = \"cartesian\" is not meant; "
-                    "\"bed_fitted\" is",
-                    steepness)};
+    if (steepness > gentle)
+        found.push_back(
+            fmt::format("the bed has a slope of {:.3g}, for which depth.form = \"cartesian\" is not meant; "
+                        "\"bed_fitted\" is",
+                        steepness));
+    return found;
 }
 
 void DepthEvolution::create(const std::function<void()>&) {

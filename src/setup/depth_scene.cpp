@@ -116,7 +116,7 @@ void read_releases(const Communicator& comm, const Scene& scene, const SceneTerr
     if (scene.faulty()) return;
     for (std::size_t k = 0; k < table_of.size(); ++k) {
         const Section& table = *table_of[k];
-        const auto [released, beyond, unknown, outside_box] =
+        const auto [released, beyond, unknown, cut, outside_box] =
             columns_of(setup.releases[k], *setup.simulation.terrain, setup.simulation.settings, box);
         if (unknown)
             table.error("", fmt::format("reaches beyond the terrain, at ({:.6g}, {:.6g}) m {}", (*unknown)[0],
@@ -128,6 +128,10 @@ void read_releases(const Communicator& comm, const Scene& scene, const SceneTerr
         else if (released.empty())
             table.error(table.has("level") ? "level" : "spacing",
                         "has no particles: none of its lattice is wet; make it finer or higher");
+        if (cut)
+            setup.notes.push_back(fmt::format(
+                "the water of {} ends where the terrain does, at ({:.6g}, {:.6g}) m, and flows out there",
+                setup.releases[k].name, (*cut)[0], (*cut)[1]));
     }
 }
 

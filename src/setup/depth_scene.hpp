@@ -19,6 +19,7 @@ struct DepthScene {
     OutputPlan output;
     ResultsPlan results;
     std::vector<Gauge> gauges;
+    std::vector<std::string> notes;  ///< what a user should know of the releases
 };
 
 /// Whether a scene describes a depth-integrated flow.

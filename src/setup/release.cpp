@@ -91,6 +91,18 @@ class Lattice {
     double area_;
 };
 
+/// Whether the terrain is not known at one of the four sites around.
+bool is_at_rim(const Lattice& lattice, const Terrain& terrain, const Lattice::Site& site, int dimension) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+        for (const long step : {-1L, 1L}) {
+            Lattice::Site beside = site;
+            beside[a] += step;
+            const Point place = lattice.place(beside);
+            if (lattice.contains(place) && !terrain.contains(place[0], place[1])) return true;
+        }
+    return false;
+}
+
 /// Sites beyond the bounds that a release goes on in: what reaches the particles at its edge, and what
 /// reaches that.
 constexpr long margin = 8;
@@ -120,6 +132,9 @@ ReleasedColumns columns_of(const Release& release, const Terrain& terrain, const
             const double depth = lattice.depth(place);
             if (!release.level && !columns.unknown && depth > 0 && !terrain.contains(place[0], place[1]))
                 columns.unknown = place;
+            if (release.level && !columns.cut && is_released && depth > 0 &&
+                is_at_rim(lattice, terrain, {x, y}, box.dimension))
+                columns.cut = place;
             if (!columns.outside_box && depth > 0 && !is_in(box, place)) columns.outside_box = place;
             const ReleasedColumn column{place, depth, lattice.volume(place, depth),
                                         lattice.smoothing_length()};

@@ -41,6 +41,7 @@ struct ReleasedColumns {
     std::vector<ReleasedColumn>
         beyond;  ///< where a level goes on around the region, for a moment, if it is balanced
     std::optional<Point> unknown;  ///< the first place where a release would be but the terrain is not known
+    std::optional<Point> cut;      ///< the first wet place of a level beside which the terrain is not known
     std::optional<Point> outside_box;  ///< the first beyond a closed side of the box
 };
 

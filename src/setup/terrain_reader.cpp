@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "domain/terrain_smoothing.hpp"
 #include "io/raster.hpp"
 #include "src/setup/shape_reader.hpp"
 
@@ -33,6 +34,13 @@ double linear(const std::vector<double>& profile, double x) {
     while (k + 2 < profile.size() && profile[k] < x) k += 2;
     const double share = (x - profile[k - 2]) / (profile[k] - profile[k - 2]);
     return profile[k - 1] + share * (profile[k + 1] - profile[k - 1]);
+}
+
+/// Length of `smoothing`, such that its means are of no more points than a map has.
+double read_smoothing(const Section& table, const TerrainGrid& grid) {
+    const double longest = std::min(grid.spacing[0] * static_cast<double>(grid.columns),
+                                    grid.spacing[1] * static_cast<double>(grid.rows));
+    return table.number("smoothing", "m", 0.0, {0, longest});
 }
 
 /// A ground whose elevation changes along x only, by straight lines that the interpolation between cells
@@ -66,7 +74,8 @@ SceneTerrain read_profile(const Section& table) {
         for (std::size_t column = 0; column < frame.columns; ++column)
             grid.elevations.push_back(
                 linear(profile, profile[0] + frame.spacing[0] * static_cast<double>(column)));
-    terrain.ground = std::make_shared<Terrain>(std::move(grid));
+    const double smoothing = read_smoothing(table, grid);
+    terrain.ground = std::make_shared<Terrain>(smoothed(std::move(grid), smoothing));
     return terrain;
 }
 
@@ -88,7 +97,8 @@ SceneTerrain read_terrain(const Communicator& comm, const Scene& scene, const Se
                      .columns = raster.grid.columns,
                      .rows = raster.grid.rows,
                      .elevations = {}};
-    terrain.ground = std::make_shared<Terrain>(std::move(raster.grid));
+    const double smoothing = read_smoothing(table, raster.grid);
+    terrain.ground = std::make_shared<Terrain>(smoothed(std::move(raster.grid), smoothing));
     return terrain;
 }
 

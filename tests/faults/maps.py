@@ -101,6 +101,46 @@ diagnostics = 0.5
         done = self.run_scene(change=("[run]", "[results]\nthreshold = -1\n[run]"))
         self.assert_fails(done, 2, r"results\.threshold = -1")
 
+    def test_a_fast_flow_jumps_over_no_hole(self):
+        done = self.run_scene(terrain=grid(lambda c, r: -9999 if c == 25 else slope(c, r)),
+                              change=("spacing = 3", "spacing = 15\nvelocity = [300, 0]"))
+        self.assert_fails(done, 1, r"hole of the terrain at \(12.* m, column 2[56], row 1")
+
+    def test_depths_on_the_cells_of_the_terrain_are_taken(self):
+        done = self.run_scene(change=("corners = [20, 30, 50, 30, 50, 60, 20, 60]\ndepth = 1", 'depth_raster = "snow.asc"'),
+                              snow_asc=grid(lambda c, r: 2 if 4 <= c < 10 and 6 <= r < 12 else 0), options=("--until", "0.1"))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        with (self.out / "diagnostics.csv").open() as file:
+            volume = float(next(csv.DictReader(file))["volume [m3]"])
+        self.assertAlmostEqual(volume, 2 * 30 * 30 * (1 + 0.4**2) ** 0.5, delta=0.1 * volume)  # normal to the slope
+
+    def test_a_release_out_of_the_box(self):
+        done = self.run_scene(change=("[terrain]", '[box]\nlower = [0, 0]\nupper = [40, 100]\n'
+                                      'boundaries = ["reflecting", "reflecting"]\n[terrain]'))
+        self.assert_fails(done, 2, r"release\[0\].*reaches out of the box, at \(4")
+
+    def test_sizes_that_make_too_many_of_something(self):
+        done = self.run_scene(change=("spacing = 3", "spacing = 1e-5"))
+        self.assert_fails(done, 2, r"release\[0\]\.spacing = 1e-05.*makes 9e\+12 particles; allowed: 2e\+09")
+        done = self.run_scene(change=("[run]", "[results]\nlower = [0, 0]\nupper = [100, 100]\ncell = 1e-4\n[run]"))
+        self.assert_fails(done, 2, r"results\.cell = .*cells; allowed: 1 to 1e9 in all")
+        done = self.run_scene(change=('form = "bed_fitted"', 'form = "bed_fitted"\nlargest_smoothing_length = 1'))
+        self.assert_fails(done, 2, r"depth\.largest_smoothing_length = 1 .*3\.9")
+
+    def test_results_of_other_cells_do_not_go_on(self):
+        results = "[results]\nlower = [0, 0]\nupper = [200, 100]\ncell = {}\n[run]"
+        done = self.run_scene(change=("[run]", results.format(5)), options=("--until", "2"))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        done = self.run_scene(change=("[run]", results.format(10)), options=("--until", "3", "--restart", "latest"))
+        self.assert_fails(done, 2, r"holds results of other cells than the scene's \[results\] has")
+
+    def test_a_lake_that_ends_at_the_rim_is_told(self):
+        done = self.run_scene(change=("corners = [20, 30, 50, 30, 50, 60, 20, 60]\ndepth = 1",
+                                      "corners = [100, 30, 260, 30, 260, 60, 100, 60]\nlevel = 60"),
+                              options=("--until", "0.1"))
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout + done.stderr, r"the water of release\[0\] ends where the terrain does, at \(20")
+
     def test_gauges_and_rasters_say_when_the_flow_came(self):
         done = self.run_scene(change=("[run]", '[results]\nformat = "ascii"\n[[gauge]]\nname = "hut"\nplace = [120, 45]\n[run]'),
                               options=("--until", "8"))

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -184,6 +185,26 @@ TEST(DepthVolume, IsThereOrHasLeft) {
     EXPECT_NEAR(run.totals().volume + run.outflow().volume(), released, 1e-13 * released);
     EXPECT_NE(run.outflow().take_note().find("have left the terrain"), std::string::npos);
     EXPECT_TRUE(run.outflow().take_note().empty());
+}
+
+// On every rank, naming a particle that it has reached, and no rank hangs.
+TEST(DepthFault, AVelocityThatIsNoNumberStopsTheRun) {
+    const Communicator world(MPI_COMM_WORLD);
+    const DepthScene scene = avalanche();
+    ParticleSet particles = make_columns(world, scene);
+    for (std::size_t i = 0; i < particles.size(); ++i)
+        if (particles.data(field::id)[i] == 17)
+            particles.data(field::velocity, 1)[i] = std::numeric_limits<double>::quiet_NaN();
+    DepthSimulation run(world, setup_of(scene, {}), std::move(particles));
+    try {
+        run.start();
+        for (int k = 0; k < steps; ++k) run.step();
+        ADD_FAILURE() << "no error";
+    } catch (const AgreedError& error) {
+        EXPECT_EQ(error.exit_code, 1);
+        EXPECT_NE(std::string(error.what()).find("of particle "), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("is not finite"), std::string::npos) << error.what();
+    }
 }
 
 }  // namespace

@@ -88,5 +88,11 @@ TEST(AsciiGrid, WritesWhatItReads) {
     }
 }
 
+// Before any room is made for them.
+TEST(AsciiGrid, RefusesAHeaderThatPromisesMoreThanThereIs) {
+    EXPECT_EQ(failure_of("ncols 1000000\nnrows 1000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"),
+              "its header says 1000000 x 1000000 values; its 69 characters hold fewer");
+}
+
 }  // namespace
 }  // namespace talus

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "domain/terrain.hpp"
+#include "domain/terrain_smoothing.hpp"
 
 namespace talus {
 namespace {
@@ -135,6 +136,32 @@ TEST(Terrain, RefusesGridsThatAreNone) {
     grid = grid_of(slant);
     grid.spacing[1] = -4;
     EXPECT_THROW(Terrain{grid}, std::invalid_argument);
+}
+
+// Also next to what is not known and at the rim: points count in pairs.
+TEST(TerrainSmoothing, KeepsPlanesAndWhatIsNotKnown) {
+    TerrainGrid grid = grid_of(slant, 20, 15);
+    grid.elevations[7 * 20 + 8] = unknown;
+    const TerrainGrid found = smoothed(grid, 17);
+    for (std::size_t k = 0; k < grid.elevations.size(); ++k) {
+        if (std::isnan(grid.elevations[k]))
+            EXPECT_TRUE(std::isnan(found.elevations[k]));
+        else
+            EXPECT_NEAR(found.elevations[k], grid.elevations[k], rounding);
+    }
+}
+
+// Weights that fall linearly over n spacings leave (sin(n a/2)/(n sin(a/2)))^2 of a wave of phase a a
+// spacing: the sum of Fejer's kernel.
+TEST(TerrainSmoothing, TakesTheirShareOfWaves) {
+    const double phase = 0.7;
+    const TerrainGrid grid =
+        grid_of([&](double x, double) { return std::cos(phase * (x - 200) / 5); }, 41, 5);
+    const TerrainGrid found = smoothed(grid, 4 * 5.0);
+    const double left = std::pow(std::sin(2 * phase) / (4 * std::sin(phase / 2)), 2);
+    EXPECT_NEAR(found.at(20, 2), left, 1e-12);
+    EXPECT_EQ(smoothed(grid, 4).elevations, grid.elevations);
+    EXPECT_EQ(smoothed(grid, 0).elevations, grid.elevations);
 }
 
 }  // namespace

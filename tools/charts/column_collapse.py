@@ -20,13 +20,13 @@ LOOSE = 1.35  # height of the lattice over that of the column once it has settle
 WIDTH = 21e-3  # of the periodic box [m]
 
 
-def simulate(program, aspect, folder):
+def simulate(program, aspect, folder, settings=()):
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1")
     out = pathlib.Path(folder) / f"column_{aspect}"
     length = (AREA / aspect) ** 0.5
     subprocess.run(["mpirun", "--oversubscribe", "-n", "2", program, "run", TOP / "runs/column_collapse_grains", "--out", out,
                     "--set", f"wall[2].point=[{length}, 0, 0]",
-                    "--set", f"grains[0].upper=[{length}, {WIDTH}, {LOOSE * aspect * length}]"],
+                    "--set", f"grains[0].upper=[{length}, {WIDTH}, {LOOSE * aspect * length}]", *settings],
                    check=True, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=environment)
     return out, length
 
