@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-constexpr double deep = 0.5;    // depth over length: beyond, columns fall and topple
+constexpr double deep = 0.25;   // depth over length: beyond, run-out is a sixth and more too long
 constexpr double long_ago = 5;  // times in which something ends: 1/150 of it is left
 
 /// Depth over the shorter side of what the flow covers.
