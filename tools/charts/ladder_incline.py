@@ -115,7 +115,7 @@ def draw(rows, plt):
     for row in rows:
         cost = max(row["processor_seconds"], 1e-3)
         axes.semilogx(cost, row["run_out"], "o", color=colours[row["family"]])
-        place = (4, -10) if "pore" in row["rung"] else (-8, -14) if "10 mm" in row["rung"] else (4, 4)
+        place = (4, -10) if "pore" in row["rung"] else (-95, 4) if "10 mm" in row["rung"] else (4, 4)
         axes.annotate(f"{row['rung']}: {row['run_out'] / reference - 1:+.0%}", (cost, row["run_out"]),
                       textcoords="offset points", xytext=place, fontsize=7)
     axes.set(xlabel="processor time [s]; closed forms at 1e-3", ylabel="run-out / length of the column", xlim=(5e-4, 2e4))
