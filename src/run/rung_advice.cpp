@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-constexpr double deep = 0.5;    // depth over length: beyond, columns fall and topple
+constexpr double deep = 0.25;   // depth over length: beyond, run-out is a sixth and more too long
 constexpr double long_ago = 5;  // times in which something ends: 1/150 of it is left
 
 /// Depth over the shorter side of what the flow covers.
@@ -42,8 +42,10 @@ std::string of_phases(const DepthScene& scene, const depth::TwoPhase& phases, do
     if (!(long_ago * time < 1e-2 * scene.output.end_time))
         return fmt::format("this one: drag takes {:.3g} s to join solid and water, which is not short", time);
     return fmt::format(
-        "one material with the friction of saturated solid, [friction] and no [two_phase]: drag joins solid and "
-        "water within {:.3g} s of {:.3g} s; about a fifth of the cost. This one where water runs out of the solid",
+        "one material with the friction of saturated solid, [friction] and no [two_phase]: drag joins solid "
+        "and "
+        "water within {:.3g} s of {:.3g} s; about a fifth of the cost. This one where water runs out of the "
+        "solid",
         time, scene.output.end_time);
 }
 
@@ -54,7 +56,8 @@ std::string of_pores(const DepthScene& scene, const PorePressure& pores, double 
         return fmt::format("no [pore_pressure]: it drains within {:.3g} s of {:.3g} s; about the same cost",
                            time, end);
     if (pores.points > 1 && end < 1e-2 * time)
-        return fmt::format("points = 1: pore pressure needs {:.3g} s to drain, the run takes {:.3g} s", time, end);
+        return fmt::format("points = 1: pore pressure needs {:.3g} s to drain, the run takes {:.3g} s", time,
+                           end);
     return fmt::format("this one: pore pressure drains in {:.3g} s, the run takes {:.3g} s", time, end);
 }
 
@@ -66,8 +69,10 @@ std::string rung_advice(const DepthScene& scene, const DepthTotals& start) {
     const bool is_soil = friction_coefficient(setup.friction) > 0;
     if (is_soil && aspect > deep)
         return fmt::format(
-            "a continuum in a plane (as runs/column_collapse): the flow is {:.2g} times as deep as long at the "
-            "start, and beyond {} what falls and topples is no depth-integrated flow; 10 to 1000 times the cost",
+            "a continuum in a plane (as runs/column_collapse): the flow is {:.2g} times as deep as long at "
+            "the "
+            "start, and beyond {} what falls and topples is no depth-integrated flow; 10 to 1000 times the "
+            "cost",
             aspect, deep);
     if (setup.settings.two_phase) return of_phases(scene, *setup.settings.two_phase, start.greatest_depth);
     if (setup.pore_pressure) return of_pores(scene, *setup.pore_pressure, start.greatest_depth);
@@ -78,7 +83,8 @@ std::string rung_advice(const DepthScene& scene, const DepthTotals& start) {
     const double sine = std::sqrt(1 - tilt.cosine2),
                  along = setup.settings.gravity * (sine - tilt.cosine * coulomb->friction);
     return fmt::format(
-        "a sliding block, if the way of the centre is asked: on a plane with Coulomb's friction it {}; no cost. This "
+        "a sliding block, if the way of the centre is asked: on a plane with Coulomb's friction it {}; no "
+        "cost. This "
         "one for the spread",
         along > 0 ? fmt::format("is accelerated by {:.4g} m/s2", along)
                   : fmt::format("is slowed by {:.4g} m/s2 once it moves", -along));

@@ -66,6 +66,19 @@ class Depth(Case):
         self.check('[friction]', '[two_phase]\nsolid_density = 900\nsettling_velocity = 1\n[friction]',
                    r"two_phase\.solid_density = 900 .*below that of the water")
 
+    def test_the_cheapest_model_is_named(self):
+        slide = 'dimension = 1\n[terrain]\ndip = "30 deg"\n'
+        self.assertTrue(SCENE.startswith(slide))
+        thin, pores = SCENE.replace("depth = 1", "depth = 0.1"), "[pore_pressure]\nconsolidation = {}\n[run]"
+        cases = {SCENE: "a continuum in a plane .* as deep as long",
+                 thin: r"a sliding block.*accelerated by 1\.81\d m/s2",
+                 thin.replace("[run]", pores.format(10)): r"no \[pore_pressure\]: it drains within",
+                 thin.replace("[run]", pores.format(0.01)): "this one: pore pressure drains in 0.4"}
+        for scene, words in cases.items():
+            done = talus("check", self.scene(scene), ranks=0)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertRegex(done.stdout, "cheapest model that serves: " + words)
+
     def test_no_release(self):
         done = talus("run", self.scene(SCENE[:SCENE.index("[[release]]")] + "[run]\nend_time = 1\n"), "--out", self.out,
                      ranks=0)
