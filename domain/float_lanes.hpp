@@ -29,12 +29,18 @@ class FloatLaneSum {
         parts_[k / float_lane_count % parts_.size()] += terms;
     }
     double total() const {
+        std::array<double, part_count / 2> sums;
+#ifdef __AVX512VL__
+        const auto parts = static_cast<__m512>(parts_[0]);
+        _mm512_storeu_pd(sums.data(), _mm512_add_pd(_mm512_cvtps_pd(_mm512_castps512_ps256(parts)),
+                                                    _mm512_cvtps_pd(_mm512_extractf32x8_ps(parts, 1))));
+#else
         std::array<float, part_count> parts;
         for (std::size_t p = 0; p < parts_.size(); ++p)
             parts_[p].copy_to(parts.data() + p * float_lane_count, std::experimental::element_aligned);
-        std::array<double, part_count / 2> sums;
         for (std::size_t k = 0; k < sums.size(); ++k)
             sums[k] = static_cast<double>(parts[k]) + static_cast<double>(parts[k + sums.size()]);
+#endif
         return ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
     }
 

@@ -12,7 +12,7 @@ namespace talus {
 
 namespace {
 constexpr double pairs_worth_a_particle = 40;  // what costs the same as all but pairs
-constexpr int cells_per_radius = 2;            // docs/decisions/022
+constexpr int cells_per_radius = 1;            // docs/decisions/022
 }  // namespace
 
 WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, ParticleSet particles)

@@ -53,17 +53,14 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
     std::array<const double*, 3> a{};
     for (int d = 0; d < 3; ++d)
         a[static_cast<std::size_t>(d)] = particles.data(field::acceleration, std::min(d, dimension - 1));
-    Greatest compression, acceleration2;
-    double greatest_density = 0;
+    Greatest speed, acceleration2;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
         acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
-        compression.take(std::abs(rate[i]) / density[i], i);
-        greatest_density = std::max(greatest_density, density[i]);
+        speed.take(settings.state.sound_speed_at(density[i]) + h * std::abs(rate[i]) / density[i], i);
     }
-    const double speed = settings.state.sound_speed_at(greatest_density) + h * compression.value;
     const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed,
-                 sound = settings.courant * h / (speed + damping),
+                 sound = settings.courant * h / (speed.value + damping),
                  accelerated = acceleration2.value > 0
                                    ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
                                    : infinity,
@@ -71,8 +68,8 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
                                ? viscous_share * h * h * settings.state.reference_density / settings.viscosity
                                : infinity;
     const std::uint64_t* id = particles.data(field::id);
-    if (viscous < sound && viscous < accelerated) return {viscous, id[compression.at], "viscosity"};
-    if (sound < accelerated) return {sound, id[compression.at], "sound"};
+    if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
+    if (sound < accelerated) return {sound, id[speed.at], "sound"};
     return {accelerated, id[acceleration2.at], "acceleration"};
 }
 

@@ -1,0 +1,86 @@
+"""What scenes of water say when they are wrong. Usage: running.py."""
+import sys
+import unittest
+
+from running import Case, talus
+
+SCENE = """dimension = 2
+[water]
+greatest_speed = 2
+gravity = [0, -9.81]
+artificial_viscosity = 0.02
+[[body]]
+name = "water"
+shape = "box"
+lower = [0, 0]
+upper = [0.4, 0.2]
+lattice = "cubic"
+spacing = 0.02
+surface = 0.2
+[[body]]
+name = "floor"
+shape = "box"
+lower = [-0.08, -0.08]
+upper = [0.48, 0]
+lattice = "cubic"
+wall = "free_slip"
+[run]
+end_time = 0.02
+"""
+
+
+class Water(Case):
+    def check(self, old, new, *patterns):
+        self.assertIn(old, SCENE)
+        done = talus("run", self.scene(SCENE.replace(old, new, 1)), "--out", self.out)
+        self.assert_fails(done, 2, *patterns)
+        self.assertFalse(self.out.exists())
+
+    def test_no_speed(self):
+        self.check("greatest_speed = 2\n", "", r"scene\.toml:2: water\.greatest_speed")
+
+    def test_a_negative_viscosity(self):
+        self.check("[water]", "[water]\nviscosity = -1", r"scene\.toml:3: water\.viscosity = -1")
+
+    def test_an_unknown_key(self):
+        self.check("artificial_viscosity", "artificial_viscocity", r"artificial_viscocity")
+
+    def test_an_exponent_that_is_not_whole(self):
+        self.check("[water]", "[water]\nexponent = 6.5", r"scene\.toml:3: water\.exponent = 6\.5")
+
+    def test_one_dimension(self):
+        self.check("dimension = 2", "dimension = 1", r"scene\.toml:1: dimension = 1")
+
+    def test_walls_alone(self):
+        self.check('surface = 0.2\n', 'wall = "no_slip"\n', r"all bodies are walls")
+
+    def test_a_wall_of_other_spacing(self):
+        self.check('wall = "free_slip"', 'spacing = 0.04\nwall = "free_slip"', r"body\[1\]\.spacing = .*within a tenth")
+
+    def test_a_wall_with_a_velocity(self):
+        self.check('wall = "free_slip"', 'velocity = [1, 0]\nwall = "free_slip"', r"body\[1\]\.velocity = .*\[body\.motion\]")
+
+    def test_two_of_a_name(self):
+        self.check('"floor"', '"water"', r"body\[1\]\.name = .*another of the name 'water'")
+
+    def test_a_box_shorter_than_the_kernel(self):
+        self.check("[water]", '[box]\nboundaries = ["open", "periodic"]\nlower = [0, -0.01]\nupper = [0, 0.01]\n[water]', r"box")
+
+    def test_water_that_flies_apart(self):
+        scene = self.scene(SCENE.replace("surface = 0.2\n", "velocity = [1e200, 0]\n"))
+        self.assert_fails(talus("run", scene, "--out", self.out), 1, r"particle \d+|not finite|time step has fallen")
+
+    def test_notes(self):
+        done = talus("check", self.scene(SCENE.replace("artificial_viscosity = 0.02\n", "")), ranks=0)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"note: the water has neither water\.viscosity nor")
+
+    def test_a_restart_with_other_bodies(self):
+        done = talus("run", self.scene(SCENE), "--out", self.out, "--steps", 2)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        other = self.scene(SCENE.replace('"floor"', '"ground"'))
+        self.assert_fails(talus("run", other, "--out", self.out, "--restart", "latest"), 3, r"floor \(wall\).*ground \(wall\)")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
