@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "domain/boundary.hpp"
+#include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
 #include "src/step_support.hpp"
 
@@ -23,7 +24,13 @@ WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, Par
     decomposition_.expect(particles_);
 }
 
-void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup&) {
+void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup) {
+    if (setup.holds_grains)
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &coupling_field::quadrature_volume, &coupling_field::solid_fraction,
+                 &coupling_field::fluid_density, &coupling_field::pair_acceleration,
+                 &coupling_field::grain_acceleration})
+            particles.add(*info);
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::mass, &field::density, &field::body, &field::acceleration,
              &water_field::density_rate, &field::predicted_velocity, &field::predicted_density,
@@ -35,9 +42,13 @@ double WaterSimulation::work() const {
     return std::accumulate(pass_count_.work_of_cell.begin(), pass_count_.work_of_cell.end(), 0.0);
 }
 
+CellGrid WaterSimulation::cells(const WaterSetup& setup) {
+    return {setup.box, setup.settings.radius(), cells_per_radius};
+}
+
 void WaterSimulation::arrange() {
     if (!grid_) {
-        grid_ = std::make_unique<CellGrid>(setup_.box, setup_.settings.radius(), cells_per_radius);
+        grid_ = std::make_unique<CellGrid>(cells(setup_));
         decomposition_.divide(particles_, *grid_);
     }
     decomposition_.arrange(particles_, *grid_);
@@ -80,6 +91,7 @@ void WaterSimulation::step() {
 
 /// Everything that follows from positions, velocities and densities at `time`, `time_ahead` of the state.
 void WaterSimulation::evaluate(double time_ahead, double time) {
+    if (before_evaluation_) before_evaluation_(time);
     const water::Settings& settings = setup_.settings;
     const CellTable& table = decomposition_.table();
     Halo& halo = decomposition_.halo();
@@ -90,20 +102,20 @@ void WaterSimulation::evaluate(double time_ahead, double time) {
     water::find_pressure(particles_, settings, walls);
     if (!walls.empty()) {  // which see the water's copies before copies of theirs are made
         phases_.enter(Phase::halo);
-        halo.begin(particles_, {&field::position, &field::predicted_velocity, &field::predicted_density,
-                                &field::pressure, &water_field::partner_volume});
+        halo.begin(particles_,
+                   {&field::position, &field::predicted_velocity, &field::predicted_density,
+                    &coupling_field::fluid_density, &field::pressure, &water_field::partner_volume});
         halo.finish();
         phases_.enter(Phase::gradients);
         water::wall_pass(particles_, table, Cells::all, settings, walls);
     }
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
-    overlapped(phases_, Phase::forces, halo, particles_,
-               {&field::position, &field::predicted_velocity, &field::predicted_density, &field::pressure,
-                &water_field::partner_volume, &field::body},
-               [&](Cells cells) {
-                   water::force_pass(particles_, table, cells, settings, walls, pass_count_);
-               });
+    overlapped(
+        phases_, Phase::forces, halo, particles_,
+        {&field::position, &field::predicted_velocity, &field::predicted_density,
+         &coupling_field::fluid_density, &field::pressure, &water_field::partner_volume, &field::body},
+        [&](Cells cells) { water::force_pass(particles_, table, cells, settings, walls, pass_count_); });
     const std::span<const CellEntry> cells = decomposition_.own_cells();
     for (std::size_t k = 0; k < cells.size(); ++k)
         pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);

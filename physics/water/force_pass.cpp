@@ -27,6 +27,7 @@ class ForcePass {
           position_(sph::components<D>(particles, field::position)),
           velocity_(sph::components<D>(particles, field::predicted_velocity)),
           density_(particles.data(field::predicted_density)),
+          of_fluid_(particles.data(density_of_fluid(particles))),
           pressure_(particles.data(field::pressure)),
           volume_(particles.data(water_field::partner_volume)),
           body_(particles.data(field::body)),
@@ -85,12 +86,12 @@ class ForcePass {
         const Lanes volume = load_first(volume_ + k, number);
         values[at_volume] = abs(volume);
         values[at_pressure] = load_first(pressure_ + k, number);
-        values[at_density] = excess_density(load_first(density_ + k, number), x);
+        values[at_density] = excess_density(load_first(of_fluid_ + k, number), x);
         const LaneMask is_wall = volume < 0;
         if (none_of(is_wall)) return water_.append(excess, values);
         water_.append(select(is_wall, Lanes(1.0), excess), values);
-        values[at_density] = Lanes(
-            [&](auto lane) { return lane < number && walls_[body_[k + lane]].slips ? 0.0 : 1.0; });
+        values[at_density] =
+            Lanes([&](auto lane) { return lane < number && walls_[body_[k + lane]].slips ? 0.0 : 1.0; });
         wall_.append(select(is_wall, excess, Lanes(1.0)), values);
     }
 
@@ -146,7 +147,7 @@ class ForcePass {
         }
         own.pressure = pressure_[i];
         own.density = density_[i];
-        own.excess = excess_density(density_[i], x);
+        own.excess = excess_density(of_fluid_[i], x);
         Sums sums{};
         add_up<false>(own, water_, sums);
         if (wall_.size() > 0) add_up<true>(own, wall_, sums);
@@ -158,7 +159,7 @@ class ForcePass {
     const Settings& settings_;
     std::span<const sph::WallNow> walls_;
     std::array<const double*, D> position_, velocity_;
-    const double *density_, *pressure_, *volume_;
+    const double *density_, *of_fluid_, *pressure_, *volume_;
     const std::uint8_t* body_;
     std::array<double*, D> acceleration_;
     double* rate_;

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
 #include "physics/sph/pass_support.hpp"
 #include "physics/water/neighbourhood.hpp"
@@ -19,7 +20,7 @@ class WallPass {
           walls_(walls),
           position_(sph::components<D>(particles, field::position)),
           velocity_(sph::components_to_write<D>(particles, field::predicted_velocity)),
-          density_(particles.data(field::predicted_density)),
+          density_(particles.data(density_of_fluid(particles))),
           mass_(particles.data(field::mass)),
           pressure_(particles.data(field::pressure)),
           volume_(particles.data(water_field::partner_volume)),
@@ -40,20 +41,20 @@ class WallPass {
 
     void gather(const CellEntry& cell, std::span<const Run> runs) {
         water_.clear(count_of(runs));
-        for_each_near<D>(cell, runs, position_, settings_.radius(),
-                         [this](std::uint32_t k, std::size_t number, const std::array<Lanes, D>& x,
-                                const Lanes& excess) {
-                             const LaneMask is_water = load_first(volume_ + k, number) > 0;
-                             if (none_of(is_water)) return;
-                             std::array<Lanes, value_count> values;
-                             for (int d = 0; d < D; ++d) {
-                                 values[at_position + d] = x[d];
-                                 values[at_velocity + d] = load_first(velocity_[d] + k, number);
-                             }
-                             values[at_pressure] = load_first(pressure_ + k, number);
-                             values[at_density] = load_first(density_ + k, number);
-                             water_.append(select(is_water, excess, Lanes(1.0)), values);
-                         });
+        for_each_near<D>(
+            cell, runs, position_, settings_.radius(),
+            [this](std::uint32_t k, std::size_t number, const std::array<Lanes, D>& x, const Lanes& excess) {
+                const LaneMask is_water = load_first(volume_ + k, number) > 0;
+                if (none_of(is_water)) return;
+                std::array<Lanes, value_count> values;
+                for (int d = 0; d < D; ++d) {
+                    values[at_position + d] = x[d];
+                    values[at_velocity + d] = load_first(velocity_[d] + k, number);
+                }
+                values[at_pressure] = load_first(pressure_ + k, number);
+                values[at_density] = load_first(density_ + k, number);
+                water_.append(select(is_water, excess, Lanes(1.0)), values);
+            });
         std::array<double, value_count> nobody{};
         nobody[0] = far_away;
         water_.pad(nobody);
@@ -92,8 +93,7 @@ class WallPass {
         if constexpr (D > 2) place.z = position_[2][i];
         const dem::Vector3<> moves = wall.pose.velocity_at(place);
         const std::array<double, 3> own{moves.x, moves.y, moves.z};
-        for (int d = 0; d < D; ++d)
-            velocity_[d][i] = wet && !wall.slips ? 2 * own[d] - water[d] : own[d];
+        for (int d = 0; d < D; ++d) velocity_[d][i] = wet && !wall.slips ? 2 * own[d] - water[d] : own[d];
         pressure_[i] = std::max(0.0, pressure);
         volume_[i] = -mass_[i] / settings_.state.density(pressure_[i]);
     }
@@ -111,14 +111,36 @@ class WallPass {
 
 }  // namespace
 
+const Field<double>& density_of_fluid(const ParticleSet& particles) {
+    return particles.has(coupling_field::fluid_density) ? coupling_field::fluid_density
+                                                        : field::predicted_density;
+}
+
+namespace {
+
+/// Of water with grains in it: more of them than this in a volume count as so many.
+constexpr double most_solid = 0.8;
+
+void find_density_of_fluid(ParticleSet& particles) {
+    const double *density = particles.data(field::predicted_density),
+                 *solid = particles.data(coupling_field::solid_fraction);
+    double* of_fluid = particles.data(coupling_field::fluid_density);
+    for (std::size_t i = 0; i < particles.size(); ++i)
+        of_fluid[i] = density[i] / (1 - std::min(solid[i], most_solid));
+}
+
+}  // namespace
+
 void find_pressure(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls) {
     const double *density = particles.data(field::predicted_density), *mass = particles.data(field::mass);
     double *pressure = particles.data(field::pressure), *volume = particles.data(water_field::partner_volume);
     const std::uint8_t* body = particles.data(field::body);
+    if (particles.has(coupling_field::fluid_density)) find_density_of_fluid(particles);
+    const double* of_fluid = particles.data(density_of_fluid(particles));
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const bool is_wall = !walls.empty() && walls[body[i]].is_wall;
         volume[i] = (is_wall ? -1 : 1) * mass[i] / density[i];
-        pressure[i] = settings.state.pressure(density[i]);
+        pressure[i] = settings.state.pressure(of_fluid[i]);
     }
 }
 

@@ -81,12 +81,14 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
         constexpr double alike = 0.1;
         if (water.spacing == 0 && !setup.walls[b]) water.spacing = spacing(b);
         if (water.spacing > 0 && std::abs(spacing(b) / water.spacing - 1) > alike)
-            tables[b].error("spacing", fmt::format("particles are {:.4g} m apart, those of the water before {:.4g} m; "
-                                                   "allowed: the same within a tenth",
-                                                   spacing(b), water.spacing));
+            tables[b].error("spacing",
+                            fmt::format("particles are {:.4g} m apart, those of the water before {:.4g} m; "
+                                        "allowed: the same within a tenth",
+                                        spacing(b), water.spacing));
     }
     if (water.spacing == 0 && !scene.faulty()) root.error("body", "there is no water: all bodies are walls");
-    if (std::none_of(setup.walls.begin(), setup.walls.end(), [](const auto& wall) { return wall.has_value(); }))
+    if (std::none_of(setup.walls.begin(), setup.walls.end(),
+                     [](const auto& wall) { return wall.has_value(); }))
         setup.walls.clear();
 }
 
@@ -95,6 +97,12 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
 bool is_water_scene(const Scene& scene) { return scene.root().section("water").exists(); }
 
 WaterScene read_water_scene(const Communicator& comm, const Scene& scene) {
+    WaterScene water = read_water(comm, scene);
+    scene.finish();
+    return water;
+}
+
+WaterScene read_water(const Communicator& comm, const Scene& scene) {
     const Section root = scene.root();
     WaterScene water;
     WaterSetup& setup = water.simulation;
@@ -111,7 +119,6 @@ WaterScene read_water_scene(const Communicator& comm, const Scene& scene) {
     const Section run = root.section("run");
     setup.partition = read_partition(run);
     setup.rebalance_interval = read_rebalance_interval(run);
-    scene.finish();
     return water;
 }
 
