@@ -134,6 +134,16 @@ std::vector<CellEntry> Halo::place_copies(const std::vector<Parcel>& parcels, Pa
     return copies;
 }
 
+namespace {
+template <class Real>
+void place_image(Real* values, std::size_t count, bool flips, Real shift) {
+    if (flips)
+        for (std::size_t k = 0; k < count; ++k) values[k] = -values[k];
+    if (shift != 0)
+        for (std::size_t k = 0; k < count; ++k) values[k] += shift;
+}
+}  // namespace
+
 void Halo::pack(const Outgoing& outgoing, std::byte* to) const {
     for (const FieldInfo* info : fields_) {
         const Column& column = particles_->column(*info);
@@ -142,13 +152,14 @@ void Halo::pack(const Outgoing& outgoing, std::byte* to) const {
             for (const SentCell& cell : outgoing.cells) {
                 const std::size_t size = column.value_size(), n = cell.end - cell.begin;
                 std::memcpy(to, from + cell.begin * size, n * size);
-                if (!cell.image.is_original() && info->type == ValueType::f64) {
-                    auto* values = reinterpret_cast<double*>(to);
-                    if (mirror_sign(info->shape, static_cast<int>(c), particles_->dimension(),
-                                    cell.image.flip) < 0)
-                        for (std::size_t k = 0; k < n; ++k) values[k] = -values[k];
-                    if (info->shape == Shape::point)
-                        for (std::size_t k = 0; k < n; ++k) values[k] += cell.image.shift[c];
+                if (!cell.image.is_original()) {
+                    const bool flips = mirror_sign(info->shape, static_cast<int>(c), particles_->dimension(),
+                                                   cell.image.flip) < 0;
+                    if (info->type == ValueType::f64)
+                        place_image(reinterpret_cast<double*>(to), n, flips,
+                                    info->shape == Shape::point ? cell.image.shift[c] : 0.0);
+                    if (info->type == ValueType::f32)
+                        place_image(reinterpret_cast<float*>(to), n, flips, 0.0F);
                 }
                 to += n * size;
             }

@@ -8,9 +8,15 @@ void CellTable::build(std::vector<CellEntry> entries, int dimension, int reach) 
     cells_ = std::move(entries);
     std::sort(cells_.begin(), cells_.end(),
               [](const CellEntry& a, const CellEntry& b) { return a.key < b.key; });
+    // Of the cells before each: those whose particles do not follow the last cell's in memory, and copies.
+    std::vector<std::uint32_t> breaks(cells_.size() + 1, 0), copies(cells_.size() + 1, 0);
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+        breaks[k + 1] = breaks[k] + (k == 0 || cells_[k].begin != cells_[k - 1].end ? 1 : 0);
+        copies[k + 1] = copies[k] + (cells_[k].is_copy ? 1 : 0);
+    }
     struct Row {
-        std::int64_t offset;      // of its keys from a cell's
-        std::uint32_t first = 0;  // entry that can still be reached
+        std::int64_t offset;               // of its keys from a cell's
+        std::uint32_t first = 0, end = 0;  // entries that the last cell reached
     };
     std::vector<Row> rows;
     const int reach_y = dimension > 1 ? reach : 0, reach_z = dimension > 2 ? reach : 0;
@@ -21,6 +27,12 @@ void CellTable::build(std::vector<CellEntry> entries, int dimension, int reach) 
 
     own_.clear();
     runs_.clear();
+    const auto append = [this](std::size_t first_run, std::uint32_t begin, std::uint32_t end) {
+        if (runs_.size() > first_run && runs_.back().end == begin)
+            runs_.back().end = end;
+        else
+            runs_.push_back({begin, end});
+    };
     for (std::size_t place = 0; place < cells_.size(); ++place) {
         CellEntry& cell = cells_[place];
         cell.touches_copies = false;
@@ -31,13 +43,15 @@ void CellTable::build(std::vector<CellEntry> entries, int dimension, int reach) 
             const CellKey lowest = centre - static_cast<CellKey>(reach),
                           highest = centre + static_cast<CellKey>(reach);
             while (row.first < cells_.size() && cells_[row.first].key < lowest) ++row.first;
-            for (std::uint32_t k = row.first; k < cells_.size() && cells_[k].key <= highest; ++k) {
-                if (cells_[k].is_copy) cell.touches_copies = true;
-                if (runs_.size() > first_run && runs_.back().end == cells_[k].begin)
-                    runs_.back().end = cells_[k].end;
-                else
-                    runs_.push_back({cells_[k].begin, cells_[k].end});
-            }
+            row.end = std::max(row.end, row.first);
+            while (row.end < cells_.size() && cells_[row.end].key <= highest) ++row.end;
+            if (row.first == row.end) continue;
+            if (copies[row.first] != copies[row.end]) cell.touches_copies = true;
+            if (breaks[row.first + 1] == breaks[row.end])
+                append(first_run, cells_[row.first].begin, cells_[row.end - 1].end);
+            else
+                for (std::uint32_t k = row.first; k < row.end; ++k)
+                    append(first_run, cells_[k].begin, cells_[k].end);
         }
         own_.push_back({static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(first_run),
                         static_cast<std::uint32_t>(runs_.size())});

@@ -24,8 +24,6 @@ inline constexpr Field<double> solid_fraction{
     "share of the volume that grains fill around the fluid particle"};
 inline constexpr Field<double> shared_fraction{
     "shared_fraction", "1", scalar, work, halo, "the same by the weights that forces are shared with"};
-inline constexpr Field<double> fluid_density{
-    "fluid_density", "kg m-3", scalar, work, halo, "density of the fluid itself, without the grains' volume"};
 inline constexpr Field<double> pair_acceleration{
     "pair_acceleration", "m s-2", vector, work, halo, "acceleration of pressure and viscosity"};
 inline constexpr Field<double> grain_acceleration{"grain_acceleration",

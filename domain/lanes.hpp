@@ -199,20 +199,4 @@ inline std::size_t keep_negative(const Lanes& sign, const std::uint32_t* from, s
 #endif
 }
 
-/// The same of values in lanes.
-inline std::size_t keep_negative(const Lanes& sign, const Lanes& values, double* to) {
-#ifdef __AVX512VL__
-    const __mmask8 mask = _mm512_cmp_pd_mask(static_cast<__m512d>(sign), _mm512_setzero_pd(), _CMP_LT_OQ);
-    _mm512_storeu_pd(to, _mm512_maskz_compress_pd(mask, static_cast<__m512d>(values)));
-    return static_cast<std::size_t>(_mm_popcnt_u32(mask));
-#else
-    std::size_t count = 0;
-    for (std::size_t lane = 0; lane < lane_count; ++lane) {
-        to[count] = values[lane];
-        count += sign[lane] < 0 ? 1 : 0;
-    }
-    return count;
-#endif
-}
-
 }  // namespace talus

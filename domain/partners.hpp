@@ -13,31 +13,33 @@
 
 namespace talus {
 
-/// A growing array of doubles on a cache-line boundary, for values gathered in front of a pair loop.
-class AlignedValues {
+/// A growing array on a cache-line boundary, for values gathered in front of a pair loop.
+template <class Real>
+class AlignedArray {
   public:
-    AlignedValues() = default;
-    AlignedValues(const AlignedValues&) = delete;
-    AlignedValues& operator=(const AlignedValues&) = delete;
-    ~AlignedValues() { release(); }
+    AlignedArray() = default;
+    AlignedArray(const AlignedArray&) = delete;
+    AlignedArray& operator=(const AlignedArray&) = delete;
+    ~AlignedArray() { release(); }
 
     void reserve(std::size_t count) {
         if (count <= capacity_) return;
         release();
         capacity_ = count + count / 2;
-        data_ = new (alignment) double[capacity_];
+        data_ = new (alignment) Real[capacity_];
     }
-    double* data() { return data_; }
-    const double* data() const { return data_; }
+    Real* data() { return data_; }
+    const Real* data() const { return data_; }
 
   private:
     static constexpr std::align_val_t alignment{64};
     void release() {
         if (data_) ::operator delete[](data_, alignment);
     }
-    double* data_ = nullptr;
+    Real* data_ = nullptr;
     std::size_t capacity_ = 0;
 };
+using AlignedValues = AlignedArray<double>;
 
 /// The interaction partners of the particles of one cell after another: found exactly (|r| < radius, itself
 /// excluded), in canonical order, so that what is summed over them has the same bits on any number of ranks.

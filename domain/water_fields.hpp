@@ -1,7 +1,9 @@
 #pragma once
 #include "domain/fields.hpp"
 
-/// Fields of water (physics/water).
+/// Fields of water (physics/water). What pair loops read of partners is in single precision and in units of
+/// the radius of interaction R, the speed of sound c0 and the density at rest rho0, predicted to the time of
+/// evaluation: docs/decisions/022-water.md.
 namespace talus::water_field {
 using enum Shape;
 using enum Role;
@@ -9,13 +11,24 @@ using enum Reach;
 
 inline constexpr Field<double> density_rate{
     "density_rate", "kg m-3 s-1", scalar, state, owner, "rate of the density at the last evaluation"};
-inline constexpr Field<double> partner_volume{
+inline constexpr Field<double> shift_velocity{
+    "shift_velocity", "m s-1", vector, state, owner, "that places move faster than the water"};
+inline constexpr Field<float> partner_velocity{"partner_velocity", "1", vector, work, halo,
+                                               "velocity over c0"};
+inline constexpr Field<float> partner_volume{
     "partner_volume",
-    "m3",
+    "1",
     scalar,
     work,
     halo,
-    "volume at the time of evaluation; of particles of walls with the sign changed"};
-inline constexpr Field<double> effective_viscosity{
-    "effective_viscosity", "Pa s", scalar, work, halo, "viscosity at the particle's rate of shear"};
+    "volume over that of a cube of side R; of particles of walls with the sign changed"};
+inline constexpr Field<float> partner_pressure{"partner_pressure",       "1", scalar, work, halo,
+                                               "pressure over rho0 c0^2"};
+inline constexpr Field<float> partner_density{
+    "partner_density",
+    "1",
+    scalar,
+    work,
+    halo,
+    "of water: density less that of water at rest, over rho0; of walls: 1, or 0 if they slip"};
 }  // namespace talus::water_field

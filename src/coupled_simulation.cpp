@@ -12,7 +12,6 @@
 #include "comm/exact_sum.hpp"
 #include "domain/coupling_fields.hpp"
 #include "physics/dem/vectors.hpp"
-#include "physics/water/motion.hpp"
 
 namespace talus {
 
@@ -45,7 +44,8 @@ CoupledSetup CoupledSimulation::completed(CoupledSetup setup) {
     return setup;
 }
 
-CoupledSimulation::CoupledSimulation(const Communicator& comm, CoupledSetup setup, ParticleSet water, ParticleSet grains)
+CoupledSimulation::CoupledSimulation(const Communicator& comm, CoupledSetup setup, ParticleSet water,
+                                     ParticleSet grains)
     : comm_(comm),
       setup_(completed(std::move(setup))),
       water_(comm, setup_.water, with_fields(std::move(water), setup_.coupling.fraction)),
@@ -71,7 +71,8 @@ void CoupledSimulation::resume(double time, double time_step, std::uint64_t step
                                const std::map<std::string, double>& numbers, const ParticleSet& contacts) {
     water_.resume(time, time_step, step, numbers);
     grains_.follow(water_.decomposition().partition());
-    grains_.resume(time, static_cast<std::uint64_t>(std::llround(numbers.at("grain_steps"))), numbers, contacts);
+    grains_.resume(time, static_cast<std::uint64_t>(std::llround(numbers.at("grain_steps"))), numbers,
+                   contacts);
 }
 
 void CoupledSimulation::save_numbers(std::map<std::string, double>& numbers) const {
@@ -90,10 +91,11 @@ void CoupledSimulation::choose_time_step() {
     const double own = grains_.time_step(), most = water_.time_step();
     const double count = std::floor(most / own * (1 + rounding));
     if (count < 1)
-        throw AgreedError(1, fmt::format("step {}, time {} s: the water asks for a time step of {:.4g} s ({} at "
-                                         "particle {}), that of the grains is {:.4g} s; a shorter dem.time_step?",
-                                         water_.step_count(), water_.time(), most, water_.step_limit().reason,
-                                         water_.step_limit().id, own));
+        throw AgreedError(
+            1, fmt::format("step {}, time {} s: the water asks for a time step of {:.4g} s ({} at "
+                           "particle {}), that of the grains is {:.4g} s; a shorter dem.time_step?",
+                           water_.step_count(), water_.time(), most, water_.step_limit().reason,
+                           water_.step_limit().id, own));
     water_.set_time_step(count * own);
 }
 
@@ -119,11 +121,13 @@ void CoupledSimulation::refresh_immersed(std::initializer_list<const FieldInfo*>
 
 coupling::Mixture CoupledSimulation::mixture() {
     const WaterSimulation::Access water = water_.access();
-    return {immersed_, immersed_cells_.table(), water.particles, water.decomposition.table(), water.grid.reach()};
+    return {immersed_, immersed_cells_.table(), water.particles, water.decomposition.table(),
+            water.grid.reach()};
 }
 
 const Field<double>& CoupledSimulation::shared_fraction() const {
-    return setup_.coupling.fraction == coupling::VolumeFraction::normalised ? of::solid_fraction : of::shared_fraction;
+    return setup_.coupling.fraction == coupling::VolumeFraction::normalised ? of::solid_fraction
+                                                                            : of::shared_fraction;
 }
 
 /// The own grains as they are.
@@ -162,8 +166,16 @@ void CoupledSimulation::immerse() {
     const std::uint8_t* body = water.particles.data(field::body);
     double* volume = water.particles.data(of::quadrature_volume);
     const auto& walls = setup_.water.walls;
-    for (std::size_t a = 0; a < water.particles.size(); ++a)
-        volume[a] = !walls.empty() && walls[body[a]] ? 0.0 : mass[a] / density[a];
+    const dem::Vectors place(std::as_const(water.particles), field::position);
+    const auto is_behind = [&](const dem::Vector3<>& x) {
+        return std::ranges::any_of(setup_.coupling.spreading.planes, [&](const coupling::MirrorPlane& plane) {
+            return dot(x - plane.point, plane.normal) < 0;
+        });
+    };
+    for (std::size_t a = 0; a < water.particles.size(); ++a) {
+        const bool counts = (walls.empty() || !walls[body[a]]) && !is_behind(place[a]);
+        volume[a] = counts ? mass[a] / density[a] : 0.0;
+    }
     refresh_water({&field::position, &of::quadrature_volume});
     fill_immersed();
     immersed_cells_.expect(immersed_);
@@ -175,7 +187,8 @@ void CoupledSimulation::immerse() {
     const CouplingSetup& how = setup_.coupling;
     coupling::spread_volume(mixture(), how.spreading, how.fraction, of::solid_fraction);
     if (&shared_fraction() != &of::solid_fraction)
-        coupling::spread_volume(mixture(), how.spreading, coupling::VolumeFraction::normalised, of::shared_fraction);
+        coupling::spread_volume(mixture(), how.spreading, coupling::VolumeFraction::normalised,
+                                of::shared_fraction);
     if (!starting_) return;
     const double* solid = water.particles.data(of::solid_fraction);
     for (std::size_t a = 0; a < water.particles.size(); ++a) {
@@ -189,11 +202,12 @@ void CoupledSimulation::immerse() {
 void CoupledSimulation::exchange() {
     const WaterSimulation::Access water = water_.access();
     const CouplingSetup& how = setup_.coupling;
-    water::predict(water.particles, 0);
     for (int axis = 0; axis < 3; ++axis) {
         const double* a = water.particles.data(field::acceleration, axis);
         double* pairs = water.particles.data(of::pair_acceleration, axis);
         const double gravity = setup_.water.settings.gravity[static_cast<std::size_t>(axis)];
+        const double* v = water.particles.data(field::velocity, axis);
+        std::copy(v, v + water.particles.size(), water.particles.data(field::predicted_velocity, axis));
         for (std::size_t k = 0; k < water.particles.size(); ++k) pairs[k] = a[k] - gravity;
     }
     refresh_water({&field::mass, &field::predicted_velocity, &of::solid_fraction, &of::shared_fraction,
@@ -231,7 +245,8 @@ void CoupledSimulation::return_forces() {
     std::vector<dem::Vector3<>> accelerations(grains_.grains().size());
     std::map<int, std::vector<Returned>> leaving;
     for (std::size_t i = 0; i < immersed_.size(); ++i) {
-        const Returned found{immersed_.data(of::home_place)[i], 0, (1 / immersed_.data(field::mass)[i]) * force[i]};
+        const Returned found{immersed_.data(of::home_place)[i], 0,
+                             (1 / immersed_.data(field::mass)[i]) * force[i]};
         const int rank = static_cast<int>(immersed_.data(of::home_rank)[i]);
         if (rank == comm_.rank())
             accelerations[found.place] = found.acceleration;
@@ -262,12 +277,23 @@ void CoupledSimulation::weigh_work() {
         const auto at = std::lower_bound(cells.begin(), cells.end(), grains.key,
                                          [](const CellEntry& cell, CellKey key) { return cell.key < key; });
         if (at != cells.end() && at->key == grains.key)
-            water.work_of_cell[static_cast<std::size_t>(at - cells.begin())] += each * (grains.end - grains.begin);
+            water.work_of_cell[static_cast<std::size_t>(at - cells.begin())] +=
+                each * (grains.end - grains.begin);
     }
 }
 
 CouplingTotals CoupledSimulation::totals() const {
-    enum Sum { on_grains, on_water = 3, together = 6, sizes = 9, volume, spread, mass, places, sum_count = places + 3 };
+    enum Sum {
+        on_grains,
+        on_water = 3,
+        together = 6,
+        sizes = 9,
+        volume,
+        spread,
+        mass,
+        places,
+        sum_count = places + 3
+    };
     std::vector<ExactSum> sums(sum_count);
     const auto add = [&](int sum, double value) { sums[static_cast<std::size_t>(sum)].add(value); };
     CouplingTotals totals;
@@ -301,7 +327,8 @@ CouplingTotals CoupledSimulation::totals() const {
     comm_.all_max(std::span<double>(greatest));
     double left2 = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        totals.force[static_cast<std::size_t>(axis)] = sums[static_cast<std::size_t>(on_grains + axis)].value();
+        totals.force[static_cast<std::size_t>(axis)] =
+            sums[static_cast<std::size_t>(on_grains + axis)].value();
         const double left = sums[static_cast<std::size_t>(together + axis)].value();
         left2 += left * left;
     }

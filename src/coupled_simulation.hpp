@@ -28,22 +28,23 @@ struct CoupledSetup {
 
 /// What water and grains exchange: exact sums rounded once.
 struct CouplingTotals {
-    std::array<double, 3> force{};  ///< of the water on all grains at the last exchange [N]
+    std::array<double, 3> force{};       ///< of the water on all grains at the last exchange [N]
     std::array<double, 3> mean_place{};  ///< of the grains, weighted by mass [m]
-    double imbalance = 0;           ///< |forces on grains and water together| over the sum of their sizes [1]
+    double imbalance = 0;  ///< |forces on grains and water together| over the sum of their sizes [1]
     double least_fluid_fraction = 1, greatest_kernel_sum = 0;
     double grain_volume = 0, spread_volume = 0;  ///< of all grains, and as the water sees it [m3]
     std::uint64_t clipped = 0;  ///< particles of water with less room than the exchange allows for
 };
 
-/// Water as particles and grains in it, on the mean equations of T. B. Anderson, R. Jackson, Ind. Eng. Chem. Fundam. 6
-/// (1967) 527, as M. Robinson, M. Ramaioli, S. Luding, Int. J. Multiphase Flow 59 (2014) 121 put them on particles:
-/// the density of the water is its mass for each volume of space, its pressure follows from that over the share of
-/// space that grains leave. Grains move in whole steps of their own within each step of the water
-/// (docs/decisions/023).
+/// Water as particles and grains in it, on the mean equations of T. B. Anderson, R. Jackson, Ind. Eng. Chem.
+/// Fundam. 6 (1967) 527, as M. Robinson, M. Ramaioli, S. Luding, Int. J. Multiphase Flow 59 (2014) 121 put
+/// them on particles: the density of the water is its mass for each volume of space, its pressure follows
+/// from that over the share of space that grains leave. Grains move in whole steps of their own within each
+/// step of the water (docs/decisions/023).
 class CoupledSimulation {
   public:
-    /// `water` and `grains` hold their shares of the initial state or of a checkpoint, on any ranks. Collective.
+    /// `water` and `grains` hold their shares of the initial state or of a checkpoint, on any ranks.
+    /// Collective.
     CoupledSimulation(const Communicator& comm, CoupledSetup setup, ParticleSet water, ParticleSet grains);
     CoupledSimulation(const CoupledSimulation&) = delete;
 
@@ -53,10 +54,10 @@ class CoupledSimulation {
     /// Takes away the water that is where grains are, and makes the first evaluation. Collective.
     void start();
     /// Goes on from a checkpoint. Collective.
-    void resume(double time, double time_step, std::uint64_t step, const std::map<std::string, double>& numbers,
-                const ParticleSet& contacts);
-    /// One time step of the water. Throws AgreedError (exit code 1) as either simulation does, or if the water asks
-    /// for a shorter step than that of the grains. Collective.
+    void resume(double time, double time_step, std::uint64_t step,
+                const std::map<std::string, double>& numbers, const ParticleSet& contacts);
+    /// One time step of the water. Throws AgreedError (exit code 1) as either simulation does, or if the
+    /// water asks for a shorter step than that of the grains. Collective.
     void step();
 
     void save_numbers(std::map<std::string, double>& numbers) const;

@@ -27,15 +27,16 @@ WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, Par
 void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup) {
     if (setup.holds_grains)
         for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-                 &coupling_field::quadrature_volume, &coupling_field::solid_fraction,
-                 &coupling_field::fluid_density, &coupling_field::pair_acceleration,
+                 &field::predicted_velocity, &coupling_field::quadrature_volume,
+                 &coupling_field::solid_fraction, &coupling_field::pair_acceleration,
                  &coupling_field::grain_acceleration})
             particles.add(*info);
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::mass, &field::density, &field::body, &field::acceleration,
-             &water_field::density_rate, &field::predicted_velocity, &field::predicted_density,
-             &field::pressure, &water_field::partner_volume})
+             &water_field::density_rate, &field::pressure, &water_field::partner_velocity,
+             &water_field::partner_volume, &water_field::partner_pressure, &water_field::partner_density})
         particles.add(*info);
+    if (setup.settings.shifting > 0) particles.add(water_field::shift_velocity);
 }
 
 double WaterSimulation::work() const {
@@ -74,6 +75,7 @@ void WaterSimulation::step() {
     water::kick(particles_, dt / 2);
     sph::move_walls(particles_, walls_at(time_ + dt / 2));
     sph::drift(particles_, dt);
+    water::shift(particles_, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
@@ -96,26 +98,22 @@ void WaterSimulation::evaluate(double time_ahead, double time) {
     const CellTable& table = decomposition_.table();
     Halo& halo = decomposition_.halo();
     const std::vector<sph::WallNow> walls = walls_at(time);
-    phases_.enter(Phase::motion);
-    water::predict(particles_, time_ahead);
     phases_.enter(Phase::material);
-    water::find_pressure(particles_, settings, walls);
+    water::prepare_partners(particles_, settings, walls, time_ahead);
+    const std::initializer_list<const FieldInfo*> partners = {
+        &field::position, &water_field::partner_velocity, &water_field::partner_volume,
+        &water_field::partner_pressure, &water_field::partner_density};
     if (!walls.empty()) {  // which see the water's copies before copies of theirs are made
         phases_.enter(Phase::halo);
-        halo.begin(particles_,
-                   {&field::position, &field::predicted_velocity, &field::predicted_density,
-                    &coupling_field::fluid_density, &field::pressure, &water_field::partner_volume});
+        halo.begin(particles_, partners);
         halo.finish();
         phases_.enter(Phase::gradients);
         water::wall_pass(particles_, table, Cells::all, settings, walls);
     }
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
-    overlapped(
-        phases_, Phase::forces, halo, particles_,
-        {&field::position, &field::predicted_velocity, &field::predicted_density,
-         &coupling_field::fluid_density, &field::pressure, &water_field::partner_volume, &field::body},
-        [&](Cells cells) { water::force_pass(particles_, table, cells, settings, walls, pass_count_); });
+    overlapped(phases_, Phase::forces, halo, particles_, partners,
+               [&](Cells cells) { water::force_pass(particles_, table, cells, settings, pass_count_); });
     const std::span<const CellEntry> cells = decomposition_.own_cells();
     for (std::size_t k = 0; k < cells.size(); ++k)
         pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);

@@ -64,8 +64,7 @@ dem::Vector3<> place_of(const std::array<const double*, 3>& position, std::size_
     return {position[0][i], position[1][i], position[2][i]};
 }
 
-/// Calls visit(k, weight, offset) for the places that have a weight at `centre`; `offset`: from the place to
-/// it.
+/// Calls visit(k, weight) for the places that have a weight at `centre`.
 template <class Weight, class Visit>
 void for_each_weight(const Places& places, const dem::Vector3<>& centre, double radius, const Weight& weight,
                      std::vector<double>& r2, Visit&& visit) {
@@ -88,73 +87,71 @@ void with_weight(const Spreading& spreading, Use&& use) {
         use(WendlandWeight(spreading.radius));
 }
 
-/// For each own grain: begin(i), pair(a, weight) for each image and fluid particle in reach, end(i).
-template <class Begin, class Pair, class End>
-void for_each_grain(const Mixture& mixture, const Spreading& spreading, Begin&& begin, Pair&& pair,
-                    End&& end) {
-    const auto grain_position = positions(mixture.grains), fluid_position = positions(mixture.fluid);
-    const double* volume = mixture.fluid.data(of::quadrature_volume);
-    const double radius2 = spreading.radius * spreading.radius;
+/// For each own particle k of one set: append(j, place) for each particle of the other that is within reach
+/// of its cell, to be put among `near`, then visit(k, place).
+template <class Append, class Visit>
+void for_each_own(const ParticleSet& set, const CellTable& cells, const ParticleSet& others,
+                  const CellTable& other_cells, int reach, double radius, Places& near, Append&& append,
+                  Visit&& visit) {
+    const auto own_position = positions(set), other_position = positions(others);
     std::vector<Run> runs;
-    Places near;
-    std::vector<double> r2;
-    std::vector<dem::Vector3<>> images;
-    with_weight(spreading, [&](const auto& weight) {
-        mixture.grain_cells.for_each_own(
-            Cells::all, [&](const CellEntry& cell, std::span<const Run>, std::size_t) {
-                mixture.fluid_cells.list_runs(cell_of(cell.key), 3, mixture.reach, runs);
-                const Bounds bounds(cell, grain_position);
-                near.clear();
-                for (const Run& run : runs)
-                    for (std::uint32_t a = run.begin; a < run.end; ++a)
-                        if (const dem::Vector3<> place = place_of(fluid_position, a);
-                            volume[a] > 0 && bounds.distance2(place) < radius2)
-                            near.append(place, a);
-                for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-                    begin(i);
-                    list_images(place_of(grain_position, i), spreading.planes, spreading.radius, images);
-                    for (const dem::Vector3<>& image : images)
-                        for_each_weight(near, image, spreading.radius, weight, r2,
-                                        [&](std::size_t k, double w) { pair(near.index[k], w); });
-                    end(i);
-                }
-            });
+    cells.for_each_own(Cells::all, [&](const CellEntry& cell, std::span<const Run>, std::size_t) {
+        other_cells.list_runs(cell_of(cell.key), 3, reach, runs);
+        const Bounds bounds(cell, own_position);
+        near.clear();
+        for (const Run& run : runs)
+            for (std::uint32_t j = run.begin; j < run.end; ++j)
+                if (const dem::Vector3<> place = place_of(other_position, j);
+                    bounds.distance2(place) < radius * radius)
+                    append(j, place);
+        for (std::uint32_t k = cell.begin; k < cell.end; ++k) visit(k, place_of(own_position, k));
     });
 }
 
-/// For each own fluid particle that counts: begin(a), pair(i, weight) for each grain and image in reach,
-/// end(a).
+/// For each own grain: begin(i), pair(a, weight) for each image and fluid particle in reach, end(i).
 template <class Begin, class Pair, class End>
-void for_each_fluid(const Mixture& mixture, const Spreading& spreading, Begin&& begin, Pair&& pair,
-                    End&& end) {
-    const auto grain_position = positions(mixture.grains), fluid_position = positions(mixture.fluid);
-    const double* volume = mixture.fluid.data(of::quadrature_volume);
-    const double radius2 = spreading.radius * spreading.radius;
-    std::vector<Run> runs;
+void for_each_grain(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair, End&& end) {
+    const double* volume = m.fluid.data(of::quadrature_volume);
     Places near;
     std::vector<double> r2;
     std::vector<dem::Vector3<>> images;
+    const auto append = [&](std::uint32_t a, const dem::Vector3<>& place) {
+        if (volume[a] > 0) near.append(place, a);
+    };
     with_weight(spreading, [&](const auto& weight) {
-        mixture.fluid_cells.for_each_own(
-            Cells::all, [&](const CellEntry& cell, std::span<const Run>, std::size_t) {
-                mixture.grain_cells.list_runs(cell_of(cell.key), 3, mixture.reach, runs);
-                const Bounds bounds(cell, fluid_position);
-                near.clear();
-                for (const Run& run : runs)
-                    for (std::uint32_t i = run.begin; i < run.end; ++i) {
-                        const dem::Vector3<> place = place_of(grain_position, i);
-                        if (!(bounds.distance2(place) < radius2)) continue;
-                        list_images(place, spreading.planes, spreading.radius, images);
-                        for (const dem::Vector3<>& image : images) near.append(image, i);
-                    }
-                for (std::uint32_t a = cell.begin; a < cell.end; ++a) {
-                    begin(a);
-                    if (volume[a] > 0)
-                        for_each_weight(near, place_of(fluid_position, a), spreading.radius, weight, r2,
-                                        [&](std::size_t k, double w) { pair(near.index[k], w); });
-                    end(a);
-                }
-            });
+        for_each_own(m.grains, m.grain_cells, m.fluid, m.fluid_cells, m.reach, spreading.radius, near, append,
+                     [&](std::uint32_t i, const dem::Vector3<>& place) {
+                         begin(i);
+                         list_images(place, spreading.planes, spreading.radius, images);
+                         for (const dem::Vector3<>& image : images)
+                             for_each_weight(near, image, spreading.radius, weight, r2,
+                                             [&](std::size_t k, double w) { pair(near.index[k], w); });
+                         end(i);
+                     });
+    });
+}
+
+/// For each own fluid particle: begin(a), pair(i, weight) for each grain and image in reach if a counts,
+/// end(a).
+template <class Begin, class Pair, class End>
+void for_each_fluid(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair, End&& end) {
+    const double* volume = m.fluid.data(of::quadrature_volume);
+    Places near;
+    std::vector<double> r2;
+    std::vector<dem::Vector3<>> images;
+    const auto append = [&](std::uint32_t i, const dem::Vector3<>& place) {
+        list_images(place, spreading.planes, spreading.radius, images);
+        for (const dem::Vector3<>& image : images) near.append(image, i);
+    };
+    with_weight(spreading, [&](const auto& weight) {
+        for_each_own(m.fluid, m.fluid_cells, m.grains, m.grain_cells, m.reach, spreading.radius, near, append,
+                     [&](std::uint32_t a, const dem::Vector3<>& place) {
+                         begin(a);
+                         if (volume[a] > 0)
+                             for_each_weight(near, place, spreading.radius, weight, r2,
+                                             [&](std::size_t k, double w) { pair(near.index[k], w); });
+                         end(a);
+                     });
     });
 }
 

@@ -23,6 +23,7 @@ struct Spreading {
     /// Grains with a smaller kernel sum are partly out of the fluid: they count with S_i/least_sum of their
     /// volume.
     double least_sum = 0.5;
+    /// Walls behind which grains have images; no fluid particle that counts is behind one.
     std::vector<MirrorPlane> planes = {};
 
     double wet_share(double kernel_sum) const {

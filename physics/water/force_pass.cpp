@@ -15,32 +15,42 @@ using sph::Vector;
 
 /// What a scene's water has besides pressure; what it has not costs nothing.
 struct Terms {
-    bool artificial, viscous;
+    bool artificial, viscous, shifts;
 };
 
+/// In units of the radius of interaction R, the speed of sound c0 and the density at rest rho0.
 template <int D, Terms terms>
 class ForcePass {
   public:
-    ForcePass(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls)
-        : settings_(settings),
-          walls_(walls),
-          position_(sph::components<D>(particles, field::position)),
-          velocity_(sph::components<D>(particles, field::predicted_velocity)),
-          density_(particles.data(field::predicted_density)),
-          of_fluid_(particles.data(density_of_fluid(particles))),
-          pressure_(particles.data(field::pressure)),
+    ForcePass(ParticleSet& particles, const Settings& settings)
+        : gravity_(settings.gravity),
+          frame_(sph::components<D>(particles, field::position), settings.radius()),
+          velocity_(sph::components<D>(particles, water_field::partner_velocity)),
           volume_(particles.data(water_field::partner_volume)),
-          body_(particles.data(field::body)),
+          pressure_(particles.data(water_field::partner_pressure)),
+          density_(particles.data(water_field::partner_density)),
+          mass_(particles.data(field::mass)),
           acceleration_(sph::components_to_write<D>(particles, field::acceleration)),
           rate_(particles.data(water_field::density_rate)) {
-        const double h = settings.smoothing_length, c0 = settings.state.sound_speed,
+        const double radius = settings.radius(), c0 = settings.state.sound_speed,
                      rho0 = settings.state.reference_density;
-        scale_ = 5 * sph::WendlandC2<D>::norm / std::pow(h, D + 2);
-        inverse_radius_ = 1 / settings.radius();
-        damping_ = settings.artificial_viscosity * rho0 * c0 * h;
-        softening_ = 0.01 * h * h;
-        diffusion_ = 2 * settings.density_diffusion * h * c0;
-        for (int d = 0; d < D; ++d) weight_[d] = rho0 * settings.bearing[d] / (c0 * c0);
+        // grad W = -kernel x^3 r/R^(D+2) with x = 1 - r/R
+        const double kernel = 5 * sph::WendlandC2<D>::norm * std::pow(Settings::support(), D + 2);
+        force_scale_ = kernel * c0 * c0 / radius;
+        rate_scale_ = kernel * rho0 * c0 / radius;
+        mass_scale_ = 1 / (rho0 * std::pow(radius, D));
+        if constexpr (terms.shifts) {
+            shift_ = sph::components_to_write<D>(particles, water_field::shift_velocity);
+            const double expected_speed = c0 / 10, spacing = 1 / settings.radius_in_spacings,
+                         away = 1 - spacing;
+            shift_scale_ = 2 * settings.shifting * kernel * expected_speed;
+            fullness_ = kernel;
+            nearest_ = static_cast<float>(1 / (std::pow(away, 4) * (1 + 4 * spacing)));
+            fastest_ = 0.5 * expected_speed;
+        }
+        damping_ = static_cast<float>(settings.artificial_viscosity / Settings::support());
+        friction_ = static_cast<float>(2 * settings.viscosity / (rho0 * c0 * radius));
+        diffusion_ = static_cast<float>(2 * settings.density_diffusion / Settings::support());
     }
 
     std::uint64_t visit(const CellEntry& cell, std::span<const Run> runs) {
@@ -54,146 +64,155 @@ class ForcePass {
     }
 
   private:
-    static constexpr std::size_t at_position = 0, at_velocity = D, at_volume = 2 * D, at_pressure = 2 * D + 1,
+    static constexpr std::size_t at_velocity = D, at_volume = 2 * D, at_pressure = 2 * D + 1,
                                  at_density = 2 * D + 2, value_count = 2 * D + 3;
 
-    /// Density less that of water at rest, but for a constant.
-    template <class Real>
-    Real excess_density(Real density, const std::array<Real, D>& x) const {
-        for (int d = 0; d < D; ++d) density -= weight_[d] * x[d];
-        return density;
-    }
-
     void gather(const CellEntry& cell, std::span<const Run> runs) {
+        frame_.enter(cell);
         water_.clear(count_of(runs));
         wall_.clear(count_of(runs));
-        for_each_near<D>(cell, runs, position_, settings_.radius(),
-                         [this](std::uint32_t k, std::size_t number, const std::array<Lanes, D>& x,
-                                const Lanes& excess) { append(k, number, x, excess); });
-        std::array<double, value_count> nobody{};
-        nobody[0] = far_away;
-        water_.pad(nobody);
-        wall_.pad(nobody);
-    }
-
-    /// Takes up partners k and on.
-    void append(std::uint32_t k, std::size_t number, const std::array<Lanes, D>& x, const Lanes& excess) {
-        std::array<Lanes, value_count> values;
-        for (int d = 0; d < D; ++d) {
-            values[at_position + d] = x[d];
-            values[at_velocity + d] = load_first(velocity_[d] + k, number);
-        }
-        const Lanes volume = load_first(volume_ + k, number);
-        values[at_volume] = abs(volume);
-        values[at_pressure] = load_first(pressure_ + k, number);
-        values[at_density] = excess_density(load_first(of_fluid_ + k, number), x);
-        const LaneMask is_wall = volume < 0;
-        if (none_of(is_wall)) return water_.append(excess, values);
-        water_.append(select(is_wall, Lanes(1.0), excess), values);
-        values[at_density] =
-            Lanes([&](auto lane) { return lane < number && walls_[body_[k + lane]].slips ? 0.0 : 1.0; });
-        wall_.append(select(is_wall, excess, Lanes(1.0)), values);
+        const auto all = [](std::uint32_t, std::size_t) { return ~LaneBits{0}; };
+        frame_.for_each_near(
+            runs, all,
+            [this](std::uint32_t k, std::size_t number, const std::array<FloatLanes, D>& x, LaneBits bits) {
+                std::array<FloatLanes, value_count> values;
+                for (int d = 0; d < D; ++d) {
+                    values[d] = x[d];
+                    values[at_velocity + d] = load_first(velocity_[d] + k, number);
+                }
+                const FloatLanes volume = load_first(volume_ + k, number);
+                values[at_volume] = abs(volume);
+                values[at_pressure] = load_first(pressure_ + k, number);
+                values[at_density] = load_first(density_ + k, number);
+                const LaneBits is_wall = negative_lanes(volume);
+                if ((bits & ~is_wall) != 0) water_.append(bits & ~is_wall, values);
+                if ((bits & is_wall) != 0) wall_.append(bits & is_wall, values);
+            });
+        water_.pad();
+        wall_.pad();
     }
 
     struct Own {
-        std::array<Lanes, D> x, v;
-        Lanes pressure, density, excess;
+        std::array<FloatLanes, D> x, v;
+        FloatLanes pressure, density, excess;
     };
     struct Sums {
-        std::array<LaneSum, D> force;
-        LaneSum rate;
+        std::array<FloatLaneSum, D> force;
+        FloatLaneSum rate;
+        std::array<FloatLaneSum, D> crowding;  // of shifting particles alone, as what follows
+        FloatLaneSum fullness;
     };
 
     template <bool of_wall>
     void add_up(const Own& own, const Block<value_count>& others, Sums& sums) const {
-        std::array<const double*, value_count> from;
-        for (std::size_t c = 0; c < value_count; ++c) from[c] = others.column(c);
-        for (std::size_t k = 0; k < others.size(); k += lane_count) {
-            Vector<Lanes, D> r, v;
+        constexpr float softening = 0.01F / static_cast<float>(Settings::support() * Settings::support());
+        const std::array<const float*, value_count> from = others.columns();
+        for (std::size_t k = 0; k < others.size(); k += float_lane_count) {
+            Vector<FloatLanes, D> r, v;
             for (int d = 0; d < D; ++d) {
-                r[d] = own.x[d] - load(from[at_position + d] + k);
+                r[d] = own.x[d] - load(from[d] + k);
                 v[d] = own.v[d] - load(from[at_velocity + d] + k);
             }
-            const Lanes r2 = dot(r, r), approach = dot(r, v);
-            const Lanes near = max(1 - sqrt(r2) * inverse_radius_, Lanes(0.0));
-            const Lanes weight = load(from[at_volume] + k) * (near * near * near);
-            Lanes pressure = own.pressure + load(from[at_pressure] + k);
-            Lanes friction = 2 * settings_.viscosity, damping = damping_;
-            if constexpr (of_wall) {
-                const Lanes sticks = load(from[at_density] + k);
-                friction *= sticks;
-                damping *= sticks;
+            const FloatLanes r2 = dot(r, r), approach = dot(r, v), distance = sqrt(r2);
+            const FloatLanes x = max(1 - distance, FloatLanes(0.0F)), x3 = x * x * x;
+            const FloatLanes weight = load(from[at_volume] + k) * x3;
+            const FloatLanes last = load(from[at_density] + k);  // of walls whether they do not slip
+            FloatLanes pressure = own.pressure + load(from[at_pressure] + k);
+            if constexpr (terms.artificial) {
+                const FloatLanes damping = of_wall ? damping_ * last : FloatLanes(damping_);
+                pressure -= damping * min(approach, FloatLanes(0.0F)) / (r2 + softening);
             }
-            if constexpr (terms.artificial)
-                pressure -= damping * min(approach, Lanes(0.0)) / (r2 + softening_);
             for (int d = 0; d < D; ++d) {
-                Lanes force = pressure * r[d];
-                if constexpr (terms.viscous) force -= friction * v[d];
+                FloatLanes force = pressure * r[d];
+                if constexpr (terms.viscous)
+                    force -= (of_wall ? friction_ * last : FloatLanes(friction_)) * v[d];
                 sums.force[d].add(k, weight * force);
             }
-            Lanes rate = -own.density * approach;
-            if constexpr (!of_wall) rate += diffusion_ * (load(from[at_density] + k) - own.excess);
+            FloatLanes rate = -own.density * approach;
+            if constexpr (!of_wall) rate += diffusion_ * (last - own.excess);
             sums.rate.add(k, weight * rate);
+            if constexpr (terms.shifts) {
+                const FloatLanes closeness = nearest_ * (x3 * x) * (1 + 4 * distance),
+                                 squared = closeness * closeness,
+                                 push = weight * (1 + 0.2F * squared * squared);
+                for (int d = 0; d < D; ++d) sums.crowding[d].add(k, push * r[d]);
+                sums.fullness.add(k, weight * r2);
+            }
         }
     }
 
     [[gnu::flatten]] void evaluate(std::uint32_t i) {
         Own own;
-        std::array<double, D> x;
         for (int d = 0; d < D; ++d) {
-            x[d] = position_[d][i];
-            own.x[d] = x[d];
+            own.x[d] = frame_.place(d, i);
             own.v[d] = velocity_[d][i];
         }
         own.pressure = pressure_[i];
-        own.density = density_[i];
-        own.excess = excess_density(of_fluid_[i], x);
+        own.excess = density_[i];
+        const double density = mass_scale_ * mass_[i] / static_cast<double>(volume_[i]);
+        own.density = static_cast<float>(density);
         Sums sums{};
         add_up<false>(own, water_, sums);
         if (wall_.size() > 0) add_up<true>(own, wall_, sums);
         for (int d = 0; d < D; ++d)
-            acceleration_[d][i] = settings_.gravity[d] + scale_ / density_[i] * sums.force[d].total();
-        rate_[i] = scale_ * sums.rate.total();
+            acceleration_[d][i] = gravity_[d] + force_scale_ / density * sums.force[d].total();
+        rate_[i] = rate_scale_ * sums.rate.total();
+        if constexpr (terms.shifts) shift(i, sums);
     }
 
-    const Settings& settings_;
-    std::span<const sph::WallNow> walls_;
-    std::array<const double*, D> position_, velocity_;
-    const double *density_, *of_fluid_, *pressure_, *volume_;
-    const std::uint8_t* body_;
+    /// Nowhere near a free surface, where the sum of V_j r_ij . grad W_ij is not complete.
+    void shift(std::uint32_t i, const Sums& sums) {
+        constexpr double full = 0.9 * D;
+        std::array<double, D> u{};
+        if (fullness_ * sums.fullness.total() > full)
+            for (int d = 0; d < D; ++d) u[d] = shift_scale_ * sums.crowding[d].total();
+        const double speed = std::sqrt(dot(u, u)), most = speed > fastest_ ? fastest_ / speed : 1;
+        for (int d = 0; d < D; ++d) shift_[d][i] = most * u[d];
+    }
+
+    const std::array<double, 3> gravity_;
+    LocalFrame<D> frame_;
+    std::array<const float*, D> velocity_;
+    const float *volume_, *pressure_, *density_;
+    const double* mass_;
     std::array<double*, D> acceleration_;
     double* rate_;
-    double scale_, inverse_radius_, damping_, softening_, diffusion_;
-    std::array<double, D> weight_;
+    std::array<double*, D> shift_{};
+    double force_scale_, rate_scale_, mass_scale_, shift_scale_ = 0, fullness_ = 0, fastest_ = 0;
+    float nearest_ = 0;
+    float damping_, friction_, diffusion_;
     Block<value_count> water_, wall_;
 };
-
-template <int D, Terms terms>
-void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-         std::span<const sph::WallNow> walls, sph::PassCount& count) {
-    sph::visit_cells(ForcePass<D, terms>(particles, settings, walls), table, which, count);
-}
 
 }  // namespace
 
 void force_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
-                std::span<const sph::WallNow> walls, sph::PassCount& count) {
+                sph::PassCount& count) {
     const bool artificial = settings.artificial_viscosity > 0, viscous = settings.viscosity > 0;
-    const auto with_terms = [&](auto dimension) {
-        constexpr int D = dimension;
+    const auto run = [&]<int D, Terms terms>() {
+        sph::visit_cells(ForcePass<D, terms>(particles, settings), table, which, count);
+    };
+    const bool shifts = settings.shifting > 0;
+    const auto with_shifting = [&]<int D, bool shifting>() {
         if (artificial && viscous)
-            run<D, Terms{true, true}>(particles, table, which, settings, walls, count);
+            run.template operator()<D, Terms{true, true, shifting}>();
         else if (artificial)
-            run<D, Terms{true, false}>(particles, table, which, settings, walls, count);
+            run.template operator()<D, Terms{true, false, shifting}>();
         else if (viscous)
-            run<D, Terms{false, true}>(particles, table, which, settings, walls, count);
+            run.template operator()<D, Terms{false, true, shifting}>();
         else
-            run<D, Terms{false, false}>(particles, table, which, settings, walls, count);
+            run.template operator()<D, Terms{false, false, shifting}>();
+    };
+    const auto in_dimension = [&]<int D>() {
+        if (shifts)
+            with_shifting.template operator()<D, true>();
+        else
+            with_shifting.template operator()<D, false>();
     };
     if (particles.dimension() == 2)
-        with_terms(std::integral_constant<int, 2>{});
+        in_dimension.template operator()<2>();
     else
-        with_terms(std::integral_constant<int, 3>{});
+        in_dimension.template operator()<3>();
 }
 
 }  // namespace talus::water

@@ -1,82 +1,88 @@
 #include "physics/water/motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
-#include "physics/water/passes.hpp"
 
 namespace talus::water {
 
 namespace {
 
-/// Writes the state `time` ahead into fields that may be those of the state itself.
-void advance(ParticleSet& particles, double time, const Field<double>& to_velocity,
-             const Field<double>& to_density) {
-    const auto add = [&](const double* from, const double* rate, double* to) {
-        for (std::size_t i = 0; i < particles.size(); ++i) to[i] = from[i] + time * rate[i];
-    };
-    for (int a = 0; a < particles.dimension(); ++a) {
-        double* to = particles.data(to_velocity, a);
-        add(particles.data(field::velocity, a), particles.data(field::acceleration, a), to);
-        if (particles.has(coupling_field::grain_acceleration))
-            add(to, particles.data(coupling_field::grain_acceleration, a), to);
+void move_on(ParticleSet& particles, const Field<double>& what, const Field<double>& rate, double time) {
+    const int components = component_count(what.shape, particles.dimension());
+    for (int c = 0; c < components; ++c) {
+        double* to = particles.data(what, c);
+        const double* by = particles.data(rate, c);
+        for (std::size_t i = 0; i < particles.size(); ++i) to[i] += time * by[i];
     }
-    add(particles.data(field::density), particles.data(water_field::density_rate),
-        particles.data(to_density));
 }
 
-/// The least of some limits and whose it is.
-struct Least {
-    double value = std::numeric_limits<double>::infinity();
+/// The greatest of some values and whose it is.
+struct Greatest {
+    double value = 0;
     std::size_t at = 0;
-    void take(double limit, std::size_t i) {
-        if (!(limit < value)) return;
-        value = limit;
+    void take(double other, std::size_t i) {
+        if (!(other > value)) return;
+        value = other;
         at = i;
     }
 };
 
 }  // namespace
 
-void kick(ParticleSet& particles, double time) { advance(particles, time, field::velocity, field::density); }
+void kick(ParticleSet& particles, double time) {
+    move_on(particles, field::velocity, field::acceleration, time);
+    if (particles.has(coupling_field::grain_acceleration))
+        move_on(particles, field::velocity, coupling_field::grain_acceleration, time);
+    move_on(particles, field::density, water_field::density_rate, time);
+}
 
-void predict(ParticleSet& particles, double time) {
-    advance(particles, time, field::predicted_velocity, field::predicted_density);
+void shift(ParticleSet& particles, double time) {
+    if (particles.has(water_field::shift_velocity))
+        move_on(particles, field::position, water_field::shift_velocity, time);
 }
 
 sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings) {
-    if (particles.size() == 0) return {std::numeric_limits<double>::infinity(), 0, "no particles"};
+    const double infinity = std::numeric_limits<double>::infinity();
+    if (particles.size() == 0) return {infinity, 0, "no particles"};
     constexpr double viscous_share = 0.125, accelerated_share = 0.25;
     const double h = settings.smoothing_length;
-    const double *density = particles.data(field::predicted_density),
-                 *rate = particles.data(water_field::density_rate),
-                 *of_fluid = particles.data(density_of_fluid(particles));
-    const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed;
-    Least sound, acceleration;
-    double least_share = 1;  // of the volume that the water fills
+    const double *density = particles.data(field::density), *rate = particles.data(water_field::density_rate);
+    const int dimension = particles.dimension();
+    std::array<const double*, 3> a{};
+    for (int d = 0; d < 3; ++d)
+        a[static_cast<std::size_t>(d)] = particles.data(field::acceleration, std::min(d, dimension - 1));
+    Greatest compression, acceleration2;
+    const double* solid = particles.has(coupling_field::solid_fraction)
+                              ? particles.data(coupling_field::solid_fraction)
+                              : nullptr;
+    double greatest_density = 0, least_share = 1;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        double a2 = 0;
-        for (int d = 0; d < particles.dimension(); ++d) {
-            const double a = particles.data(field::acceleration, d)[i];
-            a2 += a * a;
-        }
-        const double speed =
-            settings.state.sound_speed_at(of_fluid[i]) * std::sqrt(of_fluid[i] / density[i]) + damping +
-            h * std::abs(rate[i]) / density[i];
-        least_share = std::min(least_share, density[i] / of_fluid[i]);
-        sound.take(settings.courant * h / speed, i);
-        if (a2 > 0) acceleration.take(accelerated_share * std::sqrt(h / std::sqrt(a2)), i);
+        const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
+        acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
+        compression.take(std::abs(rate[i]) / density[i], i);
+        const double share = solid ? share_of_water(solid[i]) : 1;
+        greatest_density = std::max(greatest_density, density[i] / share);
+        least_share = std::min(least_share, share);
     }
-    const std::uint64_t* id = particles.data(field::id);
-    const double viscous = settings.viscosity > 0 ? viscous_share * h * h * settings.state.reference_density *
+    const double speed =
+        settings.state.sound_speed_at(greatest_density) / std::sqrt(least_share) + h * compression.value;
+    const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed,
+                 sound = settings.courant * h / (speed + damping),
+                 accelerated = acceleration2.value > 0
+                                   ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
+                                   : infinity,
+                 viscous = settings.viscosity > 0 ? viscous_share * h * h * settings.state.reference_density *
                                                         least_share / settings.viscosity
-                                                  : std::numeric_limits<double>::infinity();
-    if (viscous < sound.value && viscous < acceleration.value) return {viscous, id[0], "viscosity"};
-    if (sound.value < acceleration.value) return {sound.value, id[sound.at], "sound"};
-    return {acceleration.value, id[acceleration.at], "acceleration"};
+                                                  : infinity;
+    const std::uint64_t* id = particles.data(field::id);
+    if (viscous < sound && viscous < accelerated) return {viscous, id[compression.at], "viscosity"};
+    if (sound < accelerated) return {sound, id[compression.at], "sound"};
+    return {accelerated, id[acceleration2.at], "acceleration"};
 }
 
 }  // namespace talus::water

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,41 +10,52 @@ namespace talus::water {
 struct Tait {
     double reference_density = 1000;  ///< rho0 [kg/m3]
     double sound_speed = 0;           ///< c0 [m/s]
-    double exponent = 7;              ///< gamma [1]
+    int exponent = 7;                 ///< gamma, at least 2 [1]
     double background_pressure = 0;   ///< p0 [Pa]
 
     double stiffness() const { return reference_density * sound_speed * sound_speed / exponent; }
     double pressure(double density) const {
-        return background_pressure +
-               stiffness() * (std::pow(density / reference_density, exponent) - 1);
+        return background_pressure + stiffness() * (power(density / reference_density, exponent) - 1);
     }
     double density(double pressure) const {
         return reference_density *
-               std::pow(1 + (pressure - background_pressure) / stiffness(), 1 / exponent);
+               std::pow(1 + (pressure - background_pressure) / stiffness(), 1.0 / exponent);
+    }
+    double sound_speed_at(double density) const {
+        return sound_speed * std::sqrt(power(density / reference_density, exponent - 1));
     }
     /// Energy of compression per mass, the integral of p/rho^2 from rho0 on [J/kg].
     double energy(double density) const {
         const double s = density / reference_density;
-        return stiffness() / reference_density *
-                   ((std::pow(s, exponent - 1) - 1) / (exponent - 1) + 1 / s - 1) +
+        return stiffness() / reference_density * ((power(s, exponent - 1) - 1) / (exponent - 1) + 1 / s - 1) +
                background_pressure / reference_density * (1 - 1 / s);
     }
-    double sound_speed_at(double density) const {
-        return sound_speed * std::pow(density / reference_density, 0.5 * (exponent - 1));
+
+  private:
+    static double power(double base, int exponent) {
+        double product = base;
+        for (int k = 1; k < exponent; ++k) product *= base;
+        return product;
     }
 };
+
+/// Share of the volume that grains leave to the water: at least a fifth, however many there are.
+inline double share_of_water(double solid_fraction) { return 1 - std::min(solid_fraction, 0.8); }
 
 /// What a scene says of its water, resolved.
 struct Settings {
     Tait state;
-    double smoothing_length = 0;        ///< h; the kernel, Wendland's C2, ends at 2 h [m]
-    double viscosity = 0;               ///< [Pa s]
-    double artificial_viscosity = 0;    ///< alpha [1]
-    double density_diffusion = 0.1;     ///< delta [1]
-    std::array<double, 3> gravity{};    ///< [m/s2]
+    double smoothing_length = 0;      ///< h; the kernel, Wendland's C2, ends at 2 h [m]
+    double viscosity = 0;             ///< [Pa s]
+    double artificial_viscosity = 0;  ///< alpha [1]
+    double density_diffusion = 0.1;   ///< delta [1]
+    double shifting = 0;              ///< of particles towards even places, over that of the source [1]
+    std::array<double, 3> gravity{};  ///< [m/s2]
     /// Gravity along axes that have an end, whose weight pressure bears at rest [m/s2].
     std::array<double, 3> bearing{};
     double courant = 0.4;
+
+    double radius_in_spacings = 0;  ///< radius of interaction over the spacing of the particles [1]
 
     static constexpr double support() { return 2; }  ///< of the kernel [h]
     double radius() const { return support() * smoothing_length; }

@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 
-#include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
 #include "physics/sph/pass_support.hpp"
 #include "physics/water/neighbourhood.hpp"
@@ -12,6 +11,9 @@ namespace talus::water {
 
 namespace {
 
+dem::Vector3<> vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> array_of(const dem::Vector3<>& v) { return {v.x, v.y, v.z}; }
+
 template <int D>
 class WallPass {
   public:
@@ -19,134 +21,96 @@ class WallPass {
         : settings_(settings),
           walls_(walls),
           position_(sph::components<D>(particles, field::position)),
-          velocity_(sph::components_to_write<D>(particles, field::predicted_velocity)),
-          density_(particles.data(density_of_fluid(particles))),
-          mass_(particles.data(field::mass)),
-          pressure_(particles.data(field::pressure)),
-          volume_(particles.data(water_field::partner_volume)),
+          frame_(position_, settings.radius()),
           body_(particles.data(field::body)),
-          inverse_h_(1 / settings.smoothing_length) {}
+          velocity_(sph::components_to_write<D>(particles, water_field::partner_velocity)),
+          volume_(particles.data(water_field::partner_volume)),
+          partner_pressure_(particles.data(water_field::partner_pressure)),
+          pressure_(particles.data(field::pressure)) {}
 
     void visit(const CellEntry& cell, std::span<const Run> runs) {
-        const auto is_wall = [](double volume) { return volume < 0; };
+        const auto is_wall = [](float volume) { return volume < 0; };
         if (std::none_of(volume_ + cell.begin, volume_ + cell.end, is_wall)) return;
         gather(cell, runs);
+        if (water_.size() == 0) return;
         for (std::uint32_t i = cell.begin; i < cell.end; ++i)
             if (is_wall(volume_[i])) extrapolate(i);
     }
 
   private:
-    static constexpr std::size_t at_position = 0, at_velocity = D, at_pressure = 2 * D,
-                                 at_density = 2 * D + 1, value_count = 2 * D + 2;
+    static constexpr std::size_t at_velocity = D, at_pressure = 2 * D, value_count = 2 * D + 1;
 
     void gather(const CellEntry& cell, std::span<const Run> runs) {
+        frame_.enter(cell);
         water_.clear(count_of(runs));
-        for_each_near<D>(
-            cell, runs, position_, settings_.radius(),
-            [this](std::uint32_t k, std::size_t number, const std::array<Lanes, D>& x, const Lanes& excess) {
-                const LaneMask is_water = load_first(volume_ + k, number) > 0;
-                if (none_of(is_water)) return;
-                std::array<Lanes, value_count> values;
+        const auto is_water = [this](std::uint32_t k, std::size_t number) {
+            return negative_lanes(-load_first(volume_ + k, number));
+        };
+        frame_.for_each_near(
+            runs, is_water,
+            [this](std::uint32_t k, std::size_t number, const std::array<FloatLanes, D>& x, LaneBits bits) {
+                std::array<FloatLanes, value_count> values;
                 for (int d = 0; d < D; ++d) {
-                    values[at_position + d] = x[d];
+                    values[d] = x[d];
                     values[at_velocity + d] = load_first(velocity_[d] + k, number);
                 }
-                values[at_pressure] = load_first(pressure_ + k, number);
-                values[at_density] = load_first(density_ + k, number);
-                water_.append(select(is_water, excess, Lanes(1.0)), values);
+                values[at_pressure] = load_first(partner_pressure_ + k, number);
+                water_.append(bits, values);
             });
-        std::array<double, value_count> nobody{};
-        nobody[0] = far_away;
-        water_.pad(nobody);
+        water_.pad();
     }
 
     void extrapolate(std::uint32_t i) {
         const sph::WallNow& wall = walls_[body_[i]];
-        const std::array<double, 3> weight{wall.weight.x, wall.weight.y, wall.weight.z};
-        std::array<const double*, value_count> from;
-        for (std::size_t c = 0; c < value_count; ++c) from[c] = water_.column(c);
-        LaneSum all, pressure;
-        std::array<LaneSum, D> velocity{};
-        for (std::size_t k = 0; k < water_.size(); k += lane_count) {
-            Lanes r2 = 0, depth = 0;
+        const Tait& state = settings_.state;
+        const double sound2 = state.sound_speed * state.sound_speed;
+        const std::array<double, 3> weight = array_of((settings_.radius() / sound2) * wall.weight);
+        const std::array<const float*, value_count> from = water_.columns();
+        FloatLaneSum all, pressure;
+        std::array<FloatLaneSum, D> velocity{};
+        for (std::size_t k = 0; k < water_.size(); k += float_lane_count) {
+            FloatLanes r2 = 0, depth = 0;
             for (int d = 0; d < D; ++d) {
-                const Lanes r = position_[d][i] - load(from[at_position + d] + k);
+                const FloatLanes r = frame_.place(d, i) - load(from[d] + k);
                 r2 += r * r;
-                depth += weight[d] * r;
+                depth += static_cast<float>(weight[d]) * r;
             }
-            const Lanes share = sph::WendlandC2<D>::shape(sqrt(r2) * inverse_h_);
+            const FloatLanes q = sqrt(r2), x = max(1 - q, FloatLanes(0.0F)), x2 = x * x;
+            const FloatLanes share = x2 * x2 * (1 + 4 * q), p = load(from[at_pressure] + k);
             all.add(k, share);
-            pressure.add(k, share * (load(from[at_pressure] + k) + load(from[at_density] + k) * depth));
+            pressure.add(k, share * (p + (1 + p) * depth));  // rho/rho0 = 1 + p/(rho0 c0^2), nearly
             for (int d = 0; d < D; ++d) velocity[d].add(k, share * load(from[at_velocity + d] + k));
         }
         const double total = all.total();
-        std::array<double, D> mean{};
-        for (int d = 0; d < D; ++d) mean[d] = total > 0 ? velocity[d].total() / total : 0;
-        store(i, wall, total > 0, total > 0 ? pressure.total() / total : 0, mean);
-    }
-
-    void store(std::uint32_t i, const sph::WallNow& wall, bool wet, double pressure,
-               const std::array<double, D>& water) {
-        dem::Vector3<> place;
-        place.x = position_[0][i];
-        place.y = position_[1][i];
-        if constexpr (D > 2) place.z = position_[2][i];
-        const dem::Vector3<> moves = wall.pose.velocity_at(place);
-        const std::array<double, 3> own{moves.x, moves.y, moves.z};
-        for (int d = 0; d < D; ++d) velocity_[d][i] = wet && !wall.slips ? 2 * own[d] - water[d] : own[d];
-        pressure_[i] = std::max(0.0, pressure);
-        volume_[i] = -mass_[i] / settings_.state.density(pressure_[i]);
+        if (total == 0) return;
+        const double scale = state.reference_density * sound2 / total;
+        pressure_[i] = std::max(0.0, scale * pressure.total());
+        std::array<double, 3> place{};
+        for (int d = 0; d < D; ++d) place[d] = position_[d][i];
+        const std::array<double, 3> own = array_of(wall.pose.velocity_at(vector_of(place)));
+        for (int d = 0; d < D && !wall.slips; ++d)
+            velocity_[d][i] =
+                static_cast<float>(2 * own[d] / state.sound_speed - velocity[d].total() / total);
+        partner_pressure_[i] = static_cast<float>(pressure_[i] / (state.reference_density * sound2));
+        volume_[i] /= 1 + partner_pressure_[i];  // as density is nearly 1 + p/(rho0 c0^2)
     }
 
     const Settings& settings_;
     std::span<const sph::WallNow> walls_;
     std::array<const double*, D> position_;
-    std::array<double*, D> velocity_;
-    const double *density_, *mass_;
-    double *pressure_, *volume_;
+    LocalFrame<D> frame_;
     const std::uint8_t* body_;
-    double inverse_h_;
+    std::array<float*, D> velocity_;
+    float *volume_, *partner_pressure_;
+    double* pressure_;
     Block<value_count> water_;
 };
 
 }  // namespace
 
-const Field<double>& density_of_fluid(const ParticleSet& particles) {
-    return particles.has(coupling_field::fluid_density) ? coupling_field::fluid_density
-                                                        : field::predicted_density;
-}
-
-namespace {
-
-/// Of water with grains in it: more of them than this in a volume count as so many.
-constexpr double most_solid = 0.8;
-
-void find_density_of_fluid(ParticleSet& particles) {
-    const double *density = particles.data(field::predicted_density),
-                 *solid = particles.data(coupling_field::solid_fraction);
-    double* of_fluid = particles.data(coupling_field::fluid_density);
-    for (std::size_t i = 0; i < particles.size(); ++i)
-        of_fluid[i] = density[i] / (1 - std::min(solid[i], most_solid));
-}
-
-}  // namespace
-
-void find_pressure(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls) {
-    const double *density = particles.data(field::predicted_density), *mass = particles.data(field::mass);
-    double *pressure = particles.data(field::pressure), *volume = particles.data(water_field::partner_volume);
-    const std::uint8_t* body = particles.data(field::body);
-    if (particles.has(coupling_field::fluid_density)) find_density_of_fluid(particles);
-    const double* of_fluid = particles.data(density_of_fluid(particles));
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-        const bool is_wall = !walls.empty() && walls[body[i]].is_wall;
-        volume[i] = (is_wall ? -1 : 1) * mass[i] / density[i];
-        pressure[i] = settings.state.pressure(of_fluid[i]);
-    }
-}
-
 void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                std::span<const sph::WallNow> walls) {
-    const auto run = [&](auto pass) {
+    const auto run = [&](auto&& pass) {
         table.for_each_own(which, [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
             pass.visit(cell, runs);
         });

@@ -28,8 +28,8 @@ int check_water_scene(const Communicator& comm, const Scene& scene) {
     fmt::print("water: {:.6g} kg, {} particles of it and {} of walls on {} ranks, {} bytes each in fields\n",
                totals.mass, totals.particles, evolution.total_particles() - totals.particles, comm.size(),
                evolution.particles().bytes_per_particle());
-    fmt::print("spacing {:.4g} m, kernel ends at {:.4g} m, sound {:.4g} m/s\n", setup.spacing, settings.radius(),
-               settings.state.sound_speed);
+    fmt::print("spacing {:.4g} m, kernel ends at {:.4g} m, sound {:.4g} m/s\n", setup.spacing,
+               settings.radius(), settings.state.sound_speed);
     const double steps = setup.output.end_time / first_step;
     fmt::print("first time step: {:.4g} s (limited by {} at particle {}); {:.0f} such steps to {} s\n",
                first_step, evolution.simulation().step_limit().reason, evolution.simulation().step_limit().id,

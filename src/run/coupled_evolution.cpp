@@ -32,7 +32,8 @@ std::vector<std::string> CoupledEvolution::warnings() const {
 }
 
 void CoupledEvolution::create(const std::function<void()>&) {
-    simulation_.emplace(comm_, setup_.simulation(), make_water(comm_, setup_.water), make_grains(comm_, setup_.grains));
+    simulation_.emplace(comm_, setup_.simulation(), make_water(comm_, setup_.water),
+                        make_grains(comm_, setup_.grains));
 }
 
 void CoupledEvolution::start() {
@@ -40,14 +41,16 @@ void CoupledEvolution::start() {
     simulation_->start();
     const double least = setup_.coupling.laws.least_fluid_fraction;
     if (const CouplingTotals t = simulation_->totals(); t.least_fluid_fraction < least)
-        scene_.root().error("grains", fmt::format("they leave {:.3g} of the volume to the water somewhere at the start, "
-                                                  "denser than grains pack; allowed: at least "
-                                                  "coupling.least_fluid_fraction = {:.3g}",
-                                                  t.least_fluid_fraction, least));
+        scene_.root().error(
+            "grains", fmt::format("they leave {:.3g} of the volume to the water somewhere at the start, "
+                                  "denser than grains pack; allowed: at least "
+                                  "coupling.least_fluid_fraction = {:.3g}",
+                                  t.least_fluid_fraction, least));
     if (const double overlap = simulation_->grains().totals().greatest_overlap; overlap > most_overlap)
-        scene_.root().error("grains", fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; "
-                                                  "allowed: {}",
-                                                  overlap, most_overlap));
+        scene_.root().error("grains",
+                            fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; "
+                                        "allowed: {}",
+                                        overlap, most_overlap));
     scene_.finish();
 }
 
@@ -55,8 +58,8 @@ std::vector<std::string> CoupledEvolution::bodies() const {
     std::vector<std::string> names;
     const auto& walls = setup_.water.simulation.walls;
     for (std::size_t b = 0; b < setup_.water.bodies.size(); ++b)
-        names.push_back(
-            fmt::format("{} ({})", setup_.water.bodies[b].name, !walls.empty() && walls[b] ? "wall" : "water"));
+        names.push_back(fmt::format("{} ({})", setup_.water.bodies[b].name,
+                                    !walls.empty() && walls[b] ? "wall" : "water"));
     for (const GrainBody& body : setup_.grains.bodies) names.push_back(fmt::format("{} (grains)", body.name));
     return names;
 }
@@ -74,10 +77,10 @@ ReadCheckpoint CoupledEvolution::read(const std::filesystem::path& what,
                                       fmt::join(found.state.materials, ", "), fmt::join(wanted, ", ")));
     if (const std::vector<std::string> wanted = names_of_walls(setup_.grains.simulation.walls);
         found.state.walls != wanted)
-        throw AgreedError(exit_input_output,
-                          fmt::format("{}: is of a scene with other walls of grains: {}; this one has {}",
-                                      found.file.string(), fmt::join(found.state.walls, ", "),
-                                      fmt::join(wanted, ", ")));
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: is of a scene with other walls of grains: {}; this one has {}",
+                        found.file.string(), fmt::join(found.state.walls, ", "), fmt::join(wanted, ", ")));
     simulation_.emplace(comm_, setup_.simulation(), std::move(water), std::move(grains));
     read_contacts_ = std::move(contacts);
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -157,24 +160,27 @@ Diagnostics CoupledEvolution::diagnostics() {
     const WaterTotals w = simulation_->water().totals();
     const GrainTotals g = simulation_->grains().totals();
     const CouplingTotals c = simulation_->totals();
-    Diagnostics found{{time(), time_step(), w.mass, w.kinetic_energy, g.mass, g.kinetic_energy, w.greatest_speed,
-                       g.greatest_speed, w.least_pressure, w.greatest_pressure},
+    Diagnostics found{{time(), time_step(), w.mass, w.kinetic_energy, g.mass, g.kinetic_energy,
+                       w.greatest_speed, g.greatest_speed, w.least_pressure, w.greatest_pressure},
                       0};
-    for (const auto& values : {w.momentum, g.momentum, c.force, w.least_place, w.greatest_place, c.mean_place})
+    for (const auto& values :
+         {w.momentum, g.momentum, c.force, w.least_place, w.greatest_place, c.mean_place})
         found.row.insert(found.row.end(), values.begin(), values.end());
-    found.row.insert(found.row.end(),
-                     {c.imbalance, c.least_fluid_fraction, static_cast<double>(c.clipped), c.grain_volume,
-                      c.spread_volume, static_cast<double>(simulation_->substeps()), static_cast<double>(g.contacts)});
+    found.row.insert(
+        found.row.end(),
+        {c.imbalance, c.least_fluid_fraction, static_cast<double>(c.clipped), c.grain_volume, c.spread_volume,
+         static_cast<double>(simulation_->substeps()), static_cast<double>(g.contacts)});
     return found;
 }
 
 std::string CoupledEvolution::summary() const {
     const CouplingTotals c = simulation_->totals();
-    return fmt::format("water and {} grains: forces balance to {:.1e}, least share of water {:.3g}, {} of its particles "
-                       "below the least that counts, {:.6g} of the grains' volume seen by the water; {} steps of grains "
-                       "in the next of the water",
-                       simulation_->grains().total_grains(), c.imbalance, c.least_fluid_fraction, c.clipped,
-                       c.grain_volume > 0 ? c.spread_volume / c.grain_volume : 0.0, simulation_->substeps());
+    return fmt::format(
+        "water and {} grains: forces balance to {:.1e}, least share of water {:.3g}, {} of its particles "
+        "below the least that counts, {:.6g} of the grains' volume seen by the water; {} steps of grains "
+        "in the next of the water",
+        simulation_->grains().total_grains(), c.imbalance, c.least_fluid_fraction, c.clipped,
+        c.grain_volume > 0 ? c.spread_volume / c.grain_volume : 0.0, simulation_->substeps());
 }
 
 }  // namespace talus

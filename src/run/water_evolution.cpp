@@ -25,14 +25,16 @@ std::vector<std::string> WaterEvolution::warnings() const {
     std::vector<std::string> found;
     const water::Settings& settings = setup_.simulation.settings;
     if (settings.viscosity == 0 && settings.artificial_viscosity == 0)
-        found.emplace_back("the water has neither water.viscosity nor water.artificial_viscosity: sound in it "
-                           "is damped by the diffusion of density alone");
+        found.emplace_back(
+            "the water has neither water.viscosity nor water.artificial_viscosity: sound in it "
+            "is damped by the diffusion of density alone");
     for (int axis = 0; axis < setup_.simulation.box.dimension; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
         if (setup_.simulation.box.boundary[a] == Boundary::reflecting && settings.gravity[a] != 0)
-            found.push_back(fmt::format("gravity acts across the reflecting boundaries along {}, whose images "
-                                        "do not bear the weight of water; walls of particles do",
-                                        "xyz"[a]));
+            found.push_back(
+                fmt::format("gravity acts across the reflecting boundaries along {}, whose images "
+                            "do not bear the weight of water; walls of particles do",
+                            "xyz"[a]));
     }
     return found;
 }
@@ -52,9 +54,10 @@ ReadCheckpoint WaterEvolution::read(const std::filesystem::path& what,
     RunState wanted;
     describe(wanted);
     if (found.state.materials != wanted.materials)
-        throw AgreedError(exit_input_output,
-                          fmt::format("{}: is of the bodies {}; this scene has {}", found.file.string(),
-                                      fmt::join(found.state.materials, ", "), fmt::join(wanted.materials, ", ")));
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: is of the bodies {}; this scene has {}", found.file.string(),
+                        fmt::join(found.state.materials, ", "), fmt::join(wanted.materials, ", ")));
     emplace(std::move(particles));
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return found;
@@ -74,9 +77,10 @@ std::vector<std::string> WaterEvolution::news() {
     const double sound = setup_.simulation.settings.state.sound_speed;
     if (greatest_speed_ < slow * sound) return {};
     told_of_speed_ = true;
-    return {fmt::format("time {:.4g} s: water moves at {:.4g} m/s, {:.2g} of the speed of sound, {:.4g} m/s; above "
-                        "a tenth its density changes by more than a per cent: a greater water.greatest_speed?",
-                        time(), greatest_speed_, greatest_speed_ / sound, sound)};
+    return {fmt::format(
+        "time {:.4g} s: water moves at {:.4g} m/s, {:.2g} of the speed of sound, {:.4g} m/s; above "
+        "a tenth its density changes by more than a per cent: a greater water.greatest_speed?",
+        time(), greatest_speed_, greatest_speed_ / sound, sound)};
 }
 
 std::vector<SnapshotField> WaterEvolution::snapshot_fields() const {
@@ -111,10 +115,10 @@ std::vector<CsvColumn> WaterEvolution::diagnostics_columns() const {
 Diagnostics WaterEvolution::diagnostics() {
     const WaterTotals t = simulation_->totals();
     greatest_speed_ = std::max(greatest_speed_, t.greatest_speed);
-    Diagnostics found{{time(), time_step(), t.mass, t.kinetic_energy, t.potential_energy, t.elastic_energy,
-                       t.greatest_speed, t.least_density, t.greatest_density, t.least_pressure,
-                       t.greatest_pressure},
-                      0};
+    Diagnostics found{
+        {time(), time_step(), t.mass, t.kinetic_energy, t.potential_energy, t.elastic_energy,
+         t.greatest_speed, t.least_density, t.greatest_density, t.least_pressure, t.greatest_pressure},
+        0};
     for (std::size_t a = 0; a < static_cast<std::size_t>(setup_.simulation.box.dimension); ++a)
         found.row.insert(found.row.end(), {t.momentum[a], t.least_place[a], t.greatest_place[a]});
     return found;
@@ -122,8 +126,8 @@ Diagnostics WaterEvolution::diagnostics() {
 
 std::string WaterEvolution::summary() const {
     const WaterTotals t = simulation_->totals();
-    return fmt::format("water: {:.6g} kg, densities from {:.6g} to {:.6g} kg/m3, greatest speed {:.4g} m/s", t.mass,
-                       t.least_density, t.greatest_density, t.greatest_speed);
+    return fmt::format("water: {:.6g} kg, densities from {:.6g} to {:.6g} kg/m3, greatest speed {:.4g} m/s",
+                       t.mass, t.least_density, t.greatest_density, t.greatest_speed);
 }
 
 }  // namespace talus

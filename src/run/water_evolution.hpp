@@ -54,7 +54,7 @@ class WaterEvolution : public Evolution {
     WaterScene setup_;
     double end_time_;  ///< [s]
     std::optional<WaterSimulation> simulation_;
-    double greatest_speed_ = 0;   ///< in any row of the diagnostics [m/s]
+    double greatest_speed_ = 0;  ///< in any row of the diagnostics [m/s]
     bool told_of_speed_ = false;
 };
 

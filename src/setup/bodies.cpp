@@ -51,6 +51,20 @@ struct VelocityAt {
         for (double& component : v) component *= r > 0 ? -speed / r : 0;
         return v;
     }
+    Point operator()(const VortexVelocity& vortices) const {
+        const double k = 2 * std::numbers::pi / vortices.length;
+        return {-vortices.speed * std::cos(k * x[0]) * std::sin(k * x[1]),
+                vortices.speed * std::sin(k * x[0]) * std::cos(k * x[1]), 0};
+    }
+    Point operator()(const StandingWaveVelocity& wave) const {
+        const auto up = static_cast<std::size_t>(dimension - 1);
+        const double k = 2 * std::numbers::pi / wave.length, above = x[up] - wave.bottom,
+                     scale = wave.speed / std::sinh(k * wave.depth);
+        Point v{};
+        v[0] = -scale * std::sin(k * x[0]) * std::cosh(k * above);
+        v[up] = scale * std::cos(k * x[0]) * std::sinh(k * above);
+        return v;
+    }
 };
 
 }  // namespace

@@ -41,8 +41,21 @@ struct RadialVelocity {
     double speed;   ///< inward [m/s]
     double radius;  ///< where it has that speed [m]
 };
-using VelocityField =
-    std::variant<std::monostate, SineVelocity, CantileverVelocity, StretchVelocity, RadialVelocity>;
+/// Square vortices of G. I. Taylor, A. E. Green, Proc. R. Soc. A 158 (1937) 499, in the plane of x and y:
+/// speed (-cos kx sin ky, sin kx cos ky), k = 2 pi/length.
+struct VortexVelocity {
+    double speed;   ///< greatest [m/s]
+    double length;  ///< of two vortices side by side [m]
+};
+/// Standing wave of small amplitude on water of even depth at the moment when its surface is level: H. Lamb,
+/// Hydrodynamics, section 228. The vertical is the last axis.
+struct StandingWaveVelocity {
+    double speed;          ///< greatest, of the surface [m/s]
+    double length;         ///< of the wave [m]
+    double bottom, depth;  ///< [m]
+};
+using VelocityField = std::variant<std::monostate, SineVelocity, CantileverVelocity, StretchVelocity,
+                                   RadialVelocity, VortexVelocity, StandingWaveVelocity>;
 
 /// Stress at the start of matter that lies under a level surface.
 struct GeostaticStart {

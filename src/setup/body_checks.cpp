@@ -30,8 +30,8 @@ void refuse_overlaps(const std::vector<Section>& tables, const std::vector<Body>
     for (std::size_t b = 0; b < bodies.size(); ++b)
         for (std::size_t other = 0; other < b; ++other)
             if (overlap(bodies[other], bodies[b], dimension))
-                tables[b].error("", fmt::format("body '{}' overlaps body '{}'", bodies[b].name,
-                                                bodies[other].name));
+                tables[b].error(
+                    "", fmt::format("body '{}' overlaps body '{}'", bodies[b].name, bodies[other].name));
 }
 
 }  // namespace talus

@@ -18,7 +18,8 @@ constexpr Range not_negative{0};
 
 VelocityField read_velocity_field(const Section& table, int dimension) {
     if (!table.exists()) return {};
-    const std::string kind = table.choice("kind", {"sine", "cantilever", "stretch", "radial"});
+    const std::string kind =
+        table.choice("kind", {"sine", "cantilever", "stretch", "radial", "vortices", "standing_wave"});
     if (kind == "cantilever")
         return CantileverVelocity{table.number("clamp", "m"), table.number("length", "m", {}, positive),
                                   table.number("tip_velocity", "m/s")};
@@ -28,6 +29,12 @@ VelocityField read_velocity_field(const Section& table, int dimension) {
     if (kind == "radial")
         return RadialVelocity{origin_default(table, "centre", "m", dimension), table.number("speed", "m/s"),
                               table.number("radius", "m", 0.0, not_negative)};
+    if (kind == "vortices")
+        return VortexVelocity{table.number("speed", "m/s"), table.number("length", "m", {}, positive)};
+    if (kind == "standing_wave")
+        return StandingWaveVelocity{table.number("speed", "m/s"), table.number("length", "m", {}, positive),
+                                    table.number("bottom", "m", 0.0),
+                                    table.number("depth", "m", {}, positive)};
     return SineVelocity{read_point(table, "amplitude", "m/s", dimension),
                         read_point(table, "wave_vector", "m-1", dimension),
                         table.number("phase", "rad", 0.0)};

@@ -15,8 +15,8 @@ struct CoupledScene {
     WaterScene water;
     GrainScene grains;
     CouplingSetup coupling;
-    double kernel_radius = 0;       ///< of the water [m]
-    double greatest_diameter = 0;   ///< of the grains [m]
+    double kernel_radius = 0;      ///< of the water [m]
+    double greatest_diameter = 0;  ///< of the grains [m]
     std::vector<std::string> warnings{};
 
     CoupledSetup simulation() const { return {water.simulation, grains.simulation, coupling}; }

@@ -31,11 +31,12 @@ void read_water(const Section& table, WaterScene& scene) {
         scene.greatest_speed = table.number("greatest_speed", "m/s", {}, positive);
     settings.state.sound_speed =
         table.number("sound_speed", "m/s", sound_over_speed * scene.greatest_speed, positive);
-    settings.state.exponent = table.number("exponent", "1", 7.0, {1, 20, true});
+    settings.state.exponent = static_cast<int>(table.integer("exponent", 7, 2, 20));
     settings.state.background_pressure = table.number("background_pressure", "Pa", 0.0, not_negative);
     settings.viscosity = table.number("viscosity", "Pa s", 0.0, not_negative);
     settings.artificial_viscosity = table.number("artificial_viscosity", "1", 0.0, {0, 10});
     settings.density_diffusion = table.number("density_diffusion", "1", 0.1, {0, 1});
+    settings.shifting = table.number("shifting", "1", 0.0, {0, 2});
     settings.courant = table.number("courant", "1", 0.4, {0, 1, true});
     const Point gravity = origin_default(table, "gravity", "m/s2", box.dimension);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -115,6 +116,7 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     const double smoothing = table.number("smoothing", "1", dimension == 2 ? 2.0 : std::sqrt(3.0), {1, 4});
     read_bodies(comm, scene, water);
     setup.settings.smoothing_length = smoothing * water.spacing;
+    setup.settings.radius_in_spacings = water::Settings::support() * smoothing;
     water.output = read_output(root);
     const Section run = root.section("run");
     setup.partition = read_partition(run);

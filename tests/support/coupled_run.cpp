@@ -14,7 +14,8 @@ CoupledScene coupled_scene(const Communicator& comm, const std::filesystem::path
 
 void run_coupled(const Communicator& comm, const CoupledScene& scene,
                  const std::function<void(const CoupledSimulation&)>& after) {
-    CoupledSimulation simulation(comm, scene.simulation(), make_water(comm, scene.water), make_grains(comm, scene.grains));
+    CoupledSimulation simulation(comm, scene.simulation(), make_water(comm, scene.water),
+                                 make_grains(comm, scene.grains));
     simulation.start();
     after(simulation);
     while (simulation.water().time() < scene.water.output.end_time) {
