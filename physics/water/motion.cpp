@@ -56,23 +56,23 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
     std::array<const double*, 3> a{};
     for (int d = 0; d < 3; ++d)
         a[static_cast<std::size_t>(d)] = particles.data(field::acceleration, std::min(d, dimension - 1));
-    Greatest compression, acceleration2;
+    Greatest speed, acceleration2;
     const double* solid = particles.has(coupling_field::solid_fraction)
                               ? particles.data(coupling_field::solid_fraction)
                               : nullptr;
-    double greatest_density = 0, least_share = 1;
+    double least_share = 1;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
         acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
-        compression.take(std::abs(rate[i]) / density[i], i);
+        // Of one particle: the greatest of each over a rank would depend on who owns what.
         const double share = solid ? share_of_water(solid[i]) : 1;
-        greatest_density = std::max(greatest_density, density[i] / share);
+        speed.take(settings.state.sound_speed_at(density[i] / share) / std::sqrt(share) +
+                       h * std::abs(rate[i]) / density[i],
+                   i);
         least_share = std::min(least_share, share);
     }
-    const double speed =
-        settings.state.sound_speed_at(greatest_density) / std::sqrt(least_share) + h * compression.value;
     const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed,
-                 sound = settings.courant * h / (speed + damping),
+                 sound = settings.courant * h / (speed.value + damping),
                  accelerated = acceleration2.value > 0
                                    ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
                                    : infinity,
@@ -80,8 +80,8 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
                                                         least_share / settings.viscosity
                                                   : infinity;
     const std::uint64_t* id = particles.data(field::id);
-    if (viscous < sound && viscous < accelerated) return {viscous, id[compression.at], "viscosity"};
-    if (sound < accelerated) return {sound, id[compression.at], "sound"};
+    if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
+    if (sound < accelerated) return {sound, id[speed.at], "sound"};
     return {accelerated, id[acceleration2.at], "acceleration"};
 }
 
