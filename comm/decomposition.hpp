@@ -32,6 +32,9 @@ class Decomposition {
     /// arrange() must follow.
     bool rebalance(std::span<const double> work);
 
+    /// Takes over who owns which block from another set on cells of the same size. arrange() must follow.
+    void follow(const Partition& partition) { partition_ = partition; }
+
     /// Collective. The number of particles over all ranks, which only expect_change() changes from now on:
     /// arrange() checks it.
     void expect(const ParticleSet& particles);

@@ -34,6 +34,14 @@ CellGrid::CellGrid(const Box& box, double radius, int reach) : box_(box), reach_
     }
 }
 
+CellGrid CellGrid::reaching(double radius) const {
+    CellGrid grid = *this;
+    const double least = covered_radius_ / reach_;
+    grid.reach_ = static_cast<int>(std::ceil(radius / least));
+    grid.covered_radius_ = grid.reach_ * least;
+    return grid;
+}
+
 namespace {
 struct AxisImage {
     int index;

@@ -46,6 +46,9 @@ class CellGrid {
     /// be counted to the nearest cell, and the box twice as long at least.
     CellGrid(const Box& box, double radius, int reach);
 
+    /// The same cells for another radius: as many of them are reached as that takes.
+    CellGrid reaching(double radius) const;
+
     const Box& box() const { return box_; }
     /// How many cells away an interaction partner can be.
     int reach() const { return reach_; }

@@ -58,4 +58,23 @@ void CellTable::build(std::vector<CellEntry> entries, int dimension, int reach) 
     }
 }
 
+void CellTable::list_runs(const Cell& centre, int dimension, int reach, std::vector<Run>& runs) const {
+    runs.clear();
+    const int reach_y = dimension > 1 ? reach : 0, reach_z = dimension > 2 ? reach : 0;
+    auto next = cells_.begin();
+    for (int z = centre[2] - reach_z; z <= centre[2] + reach_z; ++z)
+        for (int y = centre[1] - reach_y; y <= centre[1] + reach_y; ++y) {
+            const CellKey lowest = key_of({centre[0] - reach, y, z}),
+                          highest = key_of({centre[0] + reach, y, z});
+            next = std::lower_bound(next, cells_.end(), lowest,
+                                    [](const CellEntry& cell, CellKey key) { return cell.key < key; });
+            for (; next != cells_.end() && next->key <= highest; ++next) {
+                if (!runs.empty() && runs.back().end == next->begin)
+                    runs.back().end = next->end;
+                else
+                    runs.push_back({next->begin, next->end});
+            }
+        }
+}
+
 }  // namespace talus

@@ -46,6 +46,10 @@ class CellTable {
         }
     }
 
+    /// The particles of all cells within `reach` of a cell, which need not be in the table, in canonical
+    /// order.
+    void list_runs(const Cell& centre, int dimension, int reach, std::vector<Run>& runs) const;
+
   private:
     struct OwnCell {
         std::uint32_t place;               ///< in cells_

@@ -9,7 +9,9 @@
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
 #include "domain/clump_fields.hpp"
+#include "domain/coupling_fields.hpp"
 #include "domain/grain_fields.hpp"
+#include "physics/dem/vectors.hpp"
 
 namespace talus {
 
@@ -72,12 +74,14 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
     const double seen = std::max(reach_, dem::greatest_bond_reach(setup_.bonds, largest_radius_));
     const double searched =
         std::max(2 * largest_radius_ + seen + setup_.skin, 1.001 * clumps_.greatest_extent());
-    grid_ = std::make_unique<CellGrid>(setup_.box, searched, cells_within(searched));
+    grid_ = std::make_unique<CellGrid>(setup_.fluid_cells
+                                           ? setup_.fluid_cells->reaching(searched)
+                                           : CellGrid(setup_.box, searched, cells_within(searched)));
     if (bonds_.in_use())
         for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
                  &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
             grains_.add(*info);
-    decomposition_.divide(grains_, *grid_);
+    if (!setup_.fluid_cells) decomposition_.divide(grains_, *grid_);
     if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
 }
 
@@ -105,6 +109,22 @@ void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
     add_fields(grains);
     if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
     if (setup.self_gravity) GrainGravity::add_fields(grains);
+    if (setup.fluid_cells)
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &coupling_field::fluid_acceleration, &coupling_field::earlier_velocity})
+            grains.add(*info);
+}
+
+void GrainSimulation::set_fluid_accelerations(std::span<const dem::Vector3<>> accelerations) {
+    const std::uint8_t* body = grains_.data(field::body);
+    const dem::Vectors all(grains_, field::acceleration),
+        of_fluid(grains_, coupling_field::fluid_acceleration), velocity(grains_, field::velocity),
+        earlier(grains_, coupling_field::earlier_velocity);
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+        if (!setup_.held[body[i]]) all.put(i, all[i] + (accelerations[i] - of_fluid[i]));
+        of_fluid.put(i, accelerations[i]);
+        earlier.put(i, velocity[i]);
+    }
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
@@ -262,8 +282,13 @@ void GrainSimulation::evaluate(double time_step) {
 
 void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
     phases_.enter(Phase::motion);
+    dem::Impulse given = impulse;
+    if (setup_.fluid_cells)
+        for (int axis = 0; axis < 3; ++axis)
+            given.steady[static_cast<std::size_t>(axis)] =
+                grains_.data(coupling_field::fluid_acceleration, axis);
     double moved2 =
-        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, impulse, kick_step,
+        std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, given, kick_step,
                                   setup_.time_step, remaining_motion(kick_step)),
                  clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step, setup_.time_step));
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
@@ -286,54 +311,6 @@ void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
 double GrainSimulation::remaining_motion(double time_step) const {
     if (!setup_.settling || setup_.settling->damping == 0 || time_ >= 0) return 1;
     return std::exp(-time_step / setup_.settling->damping);
-}
-
-void GrainSimulation::refuse_not_finite() {
-    if (!fault_.empty()) return;
-    fault_ = fmt::format("step {}, time {} s: ", step_, time_);
-    if (const NotFinite found = find_not_finite(grains_); found.field) {
-        fault_ += fmt::format("{} of grain {} is not finite", found.field->name, found.id);
-        return;
-    }
-    std::size_t fastest = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto v = std::as_const(grains_).own(field::velocity, axis);
-        for (std::size_t i = 0; i < v.size(); ++i)
-            if (!std::isfinite(v[i] * v[i])) fastest = i;
-    }
-    fault_ += fmt::format("grain {} moves too fast to follow", grains_.data(field::id)[fastest]);
-}
-
-void GrainSimulation::refuse_bond(const dem::BondFault& found) {
-    if (found.kind == dem::BondFault::none || !fault_.empty()) return;
-    fault_ = fmt::format("step {}, time {} s: the bond between grains {} and {} ", step_, time_, found.first,
-                         found.second);
-    fault_ +=
-        found.kind == dem::BondFault::overload
-            ? "bears a force that is not finite, or that strains it by more than 1; a smaller time step?"
-            : fmt::format(
-                  "is longer than {} of its length at rest, which ranks cannot follow; a lower "
-                  "strength, so that it breaks before?",
-                  dem::most_stretched);
-}
-
-void GrainSimulation::refuse_overload(const dem::Overload& overload, bool at_wall) {
-    if (!overload.found || !fault_.empty()) return;
-    const std::uint64_t* id = grains_.data(field::copied_id);
-    const double* row = rows_[overload.first];
-    const std::string place = fmt::format("({:.6g}, {:.6g}, {:.6g}) m", row[0], row[1], row[2]);
-    const std::string when = fmt::format("step {}, time {} s: ", step_, time_);
-    if (overload.behind) {
-        fault_ = when + fmt::format("grain {} at {} has left through wall '{}'", id[overload.first], place,
-                                    setup_.walls[overload.second].name);
-        return;
-    }
-    fault_ = when + fmt::format(
-                        "the force between grain {} at {} and {} is not finite, or beyond that of a grain "
-                        "pressed flat; a smaller time step, or grains that do not overlap at the start?",
-                        id[overload.first], place,
-                        at_wall ? fmt::format("wall '{}'", setup_.walls[overload.second].name)
-                                : fmt::format("grain {}", id[overload.second]));
 }
 
 std::vector<dem::WallPose> GrainSimulation::poses_at(double time) const {
@@ -362,7 +339,9 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
     }
     apply_boundaries(grains_, setup_.box);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
-    if (interval > 0 && step_ >= last_balance_ + interval) {
+    if (leader_) {
+        decomposition_.follow(*leader_);
+    } else if (interval > 0 && step_ >= last_balance_ + interval) {
         last_balance_ = step_;
         std::vector<double> work;
         for (const CellEntry& cell : decomposition_.own_cells()) work.push_back(cell.end - cell.begin);

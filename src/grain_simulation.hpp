@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,9 @@
 #include "comm/decomposition.hpp"
 #include "comm/record_halo.hpp"
 #include "domain/box.hpp"
+#include "domain/cell_grid.hpp"
 #include "domain/particles.hpp"
+#include "domain/partition.hpp"
 #include "physics/dem/bonds/bond_list.hpp"
 #include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/contact_list.hpp"
@@ -44,6 +47,9 @@ struct GrainSetup {
     int rebalance_interval = 10;              ///< steps between looks at the imbalance, at least
     GrainFlowPlan flow{};                     ///< not of scenes with clumps, sinks not of scenes with bonds
     std::optional<GrainSettling> settling{};  ///< not of scenes with clumps
+    /// Cells of a fluid that the grains are in: ranks own grains as they own these
+    /// (GrainSimulation::follow()).
+    std::optional<CellGrid> fluid_cells{};
 };
 
 /// Totals over all grains, exact sums rounded once: the same bits on any number of ranks. In a sheared box
@@ -91,6 +97,12 @@ class GrainSimulation {
     /// Whether velocities are of the time of the positions: always, but within a block of steps between two
     /// impulses of self-gravity. A run can go on only from such a state.
     bool is_synchronous() const { return !gravity_ || gravity_->is_synchronous(); }
+
+    /// Who owns which of the fluid's cells, from the next list of pairs on.
+    void follow(const Partition& partition) { leader_ = partition; }
+    /// Forces of the fluid over the mass of each own grain, in order, until the next call [m/s2]; the
+    /// velocity of now becomes earlier_velocity.
+    void set_fluid_accelerations(std::span<const dem::Vector3<>> accelerations);
 
     double time() const { return time_; }                  ///< [s]
     double time_step() const { return setup_.time_step; }  ///< [s]
@@ -156,6 +168,7 @@ class GrainSimulation {
     Decomposition decomposition_;
     double largest_radius_, reach_;
     std::unique_ptr<CellGrid> grid_;
+    std::optional<Partition> leader_;
     std::optional<GrainGravity> gravity_;
     std::optional<dem::Shear> shear_;
     GrainFlow flow_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "domain/boundary.hpp"
+#include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
 #include "src/step_support.hpp"
 
@@ -24,6 +25,12 @@ WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, Par
 }
 
 void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup) {
+    if (setup.holds_grains)
+        for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+                 &field::predicted_velocity, &coupling_field::quadrature_volume,
+                 &coupling_field::solid_fraction, &coupling_field::pair_acceleration,
+                 &coupling_field::grain_acceleration})
+            particles.add(*info);
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::mass, &field::density, &field::body, &field::acceleration,
              &water_field::density_rate, &field::pressure, &water_field::partner_velocity,
@@ -36,9 +43,13 @@ double WaterSimulation::work() const {
     return std::accumulate(pass_count_.work_of_cell.begin(), pass_count_.work_of_cell.end(), 0.0);
 }
 
+CellGrid WaterSimulation::cells(const WaterSetup& setup) {
+    return {setup.box, setup.settings.radius(), cells_per_radius};
+}
+
 void WaterSimulation::arrange() {
     if (!grid_) {
-        grid_ = std::make_unique<CellGrid>(setup_.box, setup_.settings.radius(), cells_per_radius);
+        grid_ = std::make_unique<CellGrid>(cells(setup_));
         decomposition_.divide(particles_, *grid_);
     }
     decomposition_.arrange(particles_, *grid_);
@@ -82,6 +93,7 @@ void WaterSimulation::step() {
 
 /// Everything that follows from positions, velocities and densities at `time`, `time_ahead` of the state.
 void WaterSimulation::evaluate(double time_ahead, double time) {
+    if (before_evaluation_) before_evaluation_(time);
     const water::Settings& settings = setup_.settings;
     const CellTable& table = decomposition_.table();
     Halo& halo = decomposition_.halo();

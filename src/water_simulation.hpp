@@ -1,10 +1,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "comm/communicator.hpp"
@@ -27,6 +29,7 @@ struct WaterSetup {
     std::vector<std::optional<sph::Wall>> walls;  ///< one a body: it is a wall; empty: none is
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance
+    bool holds_grains = false;    ///< that act on the water: CoupledSimulation
 };
 
 /// Totals over the water, walls left out: exact sums rounded once, the same bits on any number of ranks.
@@ -63,6 +66,22 @@ class WaterSimulation {
     /// Collective.
     void step();
 
+    /// What grains in the water change of it.
+    struct Access {
+        ParticleSet& particles;
+        Decomposition& decomposition;
+        const CellGrid& grid;
+        std::vector<double>& work_of_cell;
+    };
+    Access access() { return {particles_, decomposition_, *grid_, pass_count_.work_of_cell}; }
+    /// `find(time)` is called before each evaluation, when particles are where they belong.
+    void before_evaluation(std::function<void(double)> find) { before_evaluation_ = std::move(find); }
+    /// Makes the next step no longer than it would be.
+    void set_time_step(double time_step) { time_step_ = time_step; }
+
+    /// Cells of the grid on which the water is spread over ranks.
+    static CellGrid cells(const WaterSetup& setup);
+
     double time() const { return time_; }            ///< [s]
     double time_step() const { return time_step_; }  ///< of the next step [s]
     std::uint64_t step_count() const { return step_; }
@@ -94,6 +113,7 @@ class WaterSimulation {
 
     const Communicator& comm_;
     WaterSetup setup_;
+    std::function<void(double)> before_evaluation_;
     ParticleSet particles_;
     Decomposition decomposition_;
     std::unique_ptr<CellGrid> grid_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "comm/exact_sum.hpp"
+#include "domain/coupling_fields.hpp"
 #include "src/water_simulation.hpp"
 
 namespace talus {
@@ -17,6 +18,7 @@ WaterTotals WaterSimulation::totals() const {
     extremes.fill(-std::numeric_limits<double>::infinity());
     std::uint64_t count = 0;
     const water::Settings& settings = setup_.settings;
+    const double* solid = setup_.holds_grains ? particles_.data(coupling_field::solid_fraction) : nullptr;
     const auto take = [&extremes](int what, double value) {
         const auto k = static_cast<std::size_t>(what);
         extremes[k] = std::max(extremes[k], value);
@@ -25,7 +27,8 @@ WaterTotals WaterSimulation::totals() const {
     for (std::size_t i = 0; i < particles_.size(); ++i) {
         if (is_wall(particles_.data(field::body)[i])) continue;
         ++count;
-        const double m = particles_.data(field::mass)[i], rho = particles_.data(field::density)[i];
+        const double m = particles_.data(field::mass)[i],
+                     rho = particles_.data(field::density)[i] / (1 - (solid ? solid[i] : 0.0));
         double speed2 = 0, height = 0;
         for (int a = 0; a < particles_.dimension(); ++a) {
             const double x = particles_.data(field::position, a)[i],

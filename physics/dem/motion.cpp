@@ -96,7 +96,9 @@ double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Response
         const Lanes angular = response * (2.5 / size);  // over 2/5 m r^2, of units of force times r
         Lanes moved2 = 0;
         for (std::size_t a = 0; a < 3; ++a) {
-            const Lanes now = sum(a) * response + select(response > 0, Lanes(g[a]), Lanes(0.0));
+            Lanes around = g[a];
+            if (impulse.steady[a]) around += values(impulse.steady[a]);
+            const Lanes now = sum(a) * response + select(response > 0, around, Lanes(0.0));
             const Lanes given =
                 is_given ? select(response > 0, values(impulse.acceleration[a]), Lanes(0.0)) : Lanes(0.0);
             const Lanes velocity =

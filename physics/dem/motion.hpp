@@ -51,6 +51,8 @@ struct Impulse {
     std::array<const double*, 3> acceleration{};  ///< [m s-2]
     double now = 0;                               ///< by finish_step() [s]; 0: none
     double next = 0;                              ///< before the next drift(), by whoever asks for it [s]
+    /// What acts besides contacts and gravity throughout, or nothing [m s-2].
+    std::array<const double*, 3> steady{};
 };
 
 /// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`, then times

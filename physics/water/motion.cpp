@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
 
 namespace talus::water {
@@ -35,6 +36,8 @@ struct Greatest {
 
 void kick(ParticleSet& particles, double time) {
     move_on(particles, field::velocity, field::acceleration, time);
+    if (particles.has(coupling_field::grain_acceleration))
+        move_on(particles, field::velocity, coupling_field::grain_acceleration, time);
     move_on(particles, field::density, water_field::density_rate, time);
 }
 
@@ -54,19 +57,28 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
     for (int d = 0; d < 3; ++d)
         a[static_cast<std::size_t>(d)] = particles.data(field::acceleration, std::min(d, dimension - 1));
     Greatest speed, acceleration2;
+    const double* solid = particles.has(coupling_field::solid_fraction)
+                              ? particles.data(coupling_field::solid_fraction)
+                              : nullptr;
+    double least_share = 1;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
         acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
-        speed.take(settings.state.sound_speed_at(density[i]) + h * std::abs(rate[i]) / density[i], i);
+        // Of one particle: the greatest of each over a rank would depend on who owns what.
+        const double share = solid ? share_of_water(solid[i]) : 1;
+        speed.take(settings.state.sound_speed_at(density[i] / share) / std::sqrt(share) +
+                       h * std::abs(rate[i]) / density[i],
+                   i);
+        least_share = std::min(least_share, share);
     }
     const double damping = 0.6 * settings.artificial_viscosity * settings.state.sound_speed,
                  sound = settings.courant * h / (speed.value + damping),
                  accelerated = acceleration2.value > 0
                                    ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
                                    : infinity,
-                 viscous = settings.viscosity > 0
-                               ? viscous_share * h * h * settings.state.reference_density / settings.viscosity
-                               : infinity;
+                 viscous = settings.viscosity > 0 ? viscous_share * h * h * settings.state.reference_density *
+                                                        least_share / settings.viscosity
+                                                  : infinity;
     const std::uint64_t* id = particles.data(field::id);
     if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
     if (sound < accelerated) return {sound, id[speed.at], "sound"};

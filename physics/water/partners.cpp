@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
 #include "physics/water/passes.hpp"
 
@@ -13,6 +14,9 @@ void prepare_water(ParticleSet& particles, const Settings& settings, double time
     const double rho0 = state.reference_density, c0 = state.sound_speed;
     const double *density = particles.data(field::density), *rate = particles.data(water_field::density_rate),
                  *mass = particles.data(field::mass);
+    const double* solid = particles.has(coupling_field::solid_fraction)
+                              ? particles.data(coupling_field::solid_fraction)
+                              : nullptr;
     double* pressure = particles.data(field::pressure);
     float *volume = particles.data(water_field::partner_volume),
           *scaled = particles.data(water_field::partner_pressure),
@@ -28,17 +32,21 @@ void prepare_water(ParticleSet& particles, const Settings& settings, double time
     const double size = std::pow(settings.radius(), dimension), unit = 1 / (rho0 * c0 * c0);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const double ahead = density[i] + time * rate[i];
-        pressure[i] = state.pressure(ahead);
+        const double of_water = solid ? ahead / share_of_water(solid[i]) : ahead;
+        pressure[i] = state.pressure(of_water);
         volume[i] = static_cast<float>(mass[i] / (ahead * size));
         scaled[i] = static_cast<float>(unit * pressure[i]);
-        excess[i] = static_cast<float>(ahead / rho0 - 1 - weight[0] * x[0][i] - weight[1] * x[1][i] -
+        excess[i] = static_cast<float>(of_water / rho0 - 1 - weight[0] * x[0][i] - weight[1] * x[1][i] -
                                        weight[2] * x[2][i]);
     }
     for (int a = 0; a < dimension; ++a) {
         const double *v = particles.data(field::velocity, a), *rates = particles.data(field::acceleration, a);
         float* to = particles.data(water_field::partner_velocity, a);
+        const double* by_grains = particles.has(coupling_field::grain_acceleration)
+                                      ? particles.data(coupling_field::grain_acceleration, a)
+                                      : nullptr;
         for (std::size_t i = 0; i < particles.size(); ++i)
-            to[i] = static_cast<float>((v[i] + time * rates[i]) / c0);
+            to[i] = static_cast<float>((v[i] + time * (rates[i] + (by_grains ? by_grains[i] : 0.0))) / c0);
     }
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -37,6 +38,9 @@ struct Tait {
         return product;
     }
 };
+
+/// Share of the volume that grains leave to the water: at least a fifth, however many there are.
+inline double share_of_water(double solid_fraction) { return 1 - std::min(solid_fraction, 0.8); }
 
 /// What a scene says of its water, resolved.
 struct Settings {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "src/run/commands.hpp"
+#include "src/run/coupled_evolution.hpp"
 #include "src/run/depth_evolution.hpp"
 #include "src/run/grain_evolution.hpp"
 #include "src/run/soil_evolution.hpp"
@@ -24,6 +25,7 @@ bool any_scene(const Scene&) { return true; }
 /// In the order in which they are asked; the last describes every scene.
 constexpr std::array all_families = {
     Family{is_depth_scene, read<DepthEvolution>, check_depth_scene},
+    Family{is_coupled_scene, read<CoupledEvolution>, check_coupled_scene},
     Family{is_grain_scene, read<GrainEvolution>, check_grain_scene},
     Family{is_soil_scene, read<SoilEvolution>, check_soil_scene},
     Family{is_water_scene, read<WaterEvolution>, check_water_scene},

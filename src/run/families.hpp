@@ -21,6 +21,9 @@ int check_sph_scene(const Communicator& comm, const Scene& scene);
 /// The same of grains. Collective.
 int check_grain_scene(const Communicator& comm, const Scene& scene);
 
+/// The same of water with grains in it. Collective.
+int check_coupled_scene(const Communicator& comm, const Scene& scene);
+
 /// The same of depth-integrated flows. Collective.
 int check_depth_scene(const Communicator& comm, const Scene& scene);
 

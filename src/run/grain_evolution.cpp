@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 
 #include "domain/grain_fields.hpp"
@@ -11,6 +10,7 @@
 #include "io/checkpoint.hpp"
 #include "src/flow/contact_set.hpp"
 #include "src/run/flow_columns.hpp"
+#include "src/setup/wall_reader.hpp"
 
 namespace talus {
 
@@ -100,7 +100,8 @@ ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
         throw AgreedError(exit_input_output,
                           fmt::format("{}: is of grains of {}, this scene has {}", found.file.string(),
                                       fmt::join(found.state.materials, ", "), fmt::join(wanted, ", ")));
-    if (const std::vector<std::string> wanted = walls(); found.state.walls != wanted)
+    if (const std::vector<std::string> wanted = names_of_walls(setup_.simulation.walls);
+        found.state.walls != wanted)
         throw AgreedError(
             exit_input_output,
             fmt::format("{}: is of a scene with {}, this one has {}; what grains remember of walls goes "
@@ -139,15 +140,6 @@ void GrainEvolution::save(const WriteSets& write) {
     write(sets);
 }
 
-std::vector<std::string> GrainEvolution::walls() const {
-    constexpr std::array<const char*, std::variant_size_v<dem::WallShape>> kinds = {
-        "plane", "container", "block", "revolved", "mesh"};
-    std::vector<std::string> names;
-    for (const dem::Wall& wall : setup_.simulation.walls)
-        names.push_back(fmt::format("{} ({})", wall.name, kinds[wall.shape.index()]));
-    return names;
-}
-
 /// Where images across y stand follows from the number of steps.
 void GrainEvolution::check_shear(const ReadCheckpoint& found) const {
     const auto stored = found.state.numbers.find("sheared_in_a_step");
@@ -163,7 +155,7 @@ void GrainEvolution::check_shear(const ReadCheckpoint& found) const {
 
 void GrainEvolution::describe(RunState& state) const {
     state.materials = materials();
-    state.walls = walls();
+    state.walls = names_of_walls(setup_.simulation.walls);
     if (const double sheared = sheared_in_a_step(setup_.simulation); sheared != 0)
         state.numbers["sheared_in_a_step"] = sheared;
     simulation_->save_numbers(state.numbers);

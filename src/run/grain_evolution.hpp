@@ -53,7 +53,6 @@ class GrainEvolution : public Evolution {
     void check_shear(const ReadCheckpoint& found) const;
     bool torques_have_meaning() const;
     bool has_bonds() const { return !setup_.simulation.bonds.empty(); }
-    std::vector<std::string> walls() const;
 
     const Communicator& comm_;
     const Scene& scene_;

@@ -221,6 +221,12 @@ void read_shear(const Section& table, const std::vector<GrainBody>& bodies, bool
 bool is_grain_scene(const Scene& scene) { return scene.root().has("grains") || scene.root().has("source"); }
 
 GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
+    GrainScene grains = read_grains_of(comm, scene);
+    scene.finish();
+    return grains;
+}
+
+GrainScene read_grains_of(const Communicator& comm, const Scene& scene) {
     const Section root = scene.root();
     const std::string title = root.text("title", scene.file().stem().string());
     const auto seed = static_cast<std::uint64_t>(root.integer("seed", 1, 0));
@@ -277,7 +283,6 @@ GrainScene read_grain_scene(const Communicator& comm, const Scene& scene) {
     std::vector<WatchedRegion> regions = read_regions(root, context);
     const bool write_contacts = root.section("output").flag("contacts", false);
     refuse_together(root, widest > 0, !bonds.empty(), self_gravity.has_value(), box.shear_rate != 0);
-    scene.finish();
     return {.title = title,
             .simulation = {.box = box,
                            .laws = laws.table(),

@@ -63,6 +63,8 @@ bool is_grain_scene(const Scene& scene);
 
 /// Reads everything such a scene says. Throws SceneError (on every rank) with all faults at once. Collective.
 GrainScene read_grain_scene(const Communicator& comm, const Scene& scene);
+/// The same for a scene that says more than that: faults are only recorded in it.
+GrainScene read_grains_of(const Communicator& comm, const Scene& scene);
 
 /// An empty set with the fields that the scene's grains need.
 ParticleSet empty_grains(const GrainSetup& setup);

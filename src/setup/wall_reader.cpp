@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -154,6 +155,15 @@ std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& la
         walls.push_back({name, laws.material(table), shape, motion});
     }
     return walls;
+}
+
+std::vector<std::string> names_of_walls(const std::vector<dem::Wall>& walls) {
+    constexpr std::array<const char*, std::variant_size_v<dem::WallShape>> kinds = {
+        "plane", "container", "block", "revolved", "mesh"};
+    std::vector<std::string> names;
+    for (const dem::Wall& wall : walls)
+        names.push_back(fmt::format("{} ({})", wall.name, kinds[wall.shape.index()]));
+    return names;
 }
 
 }  // namespace talus

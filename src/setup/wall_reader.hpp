@@ -22,6 +22,9 @@ struct WallContext {
 std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& laws,
                                   std::vector<std::string>& warnings);
 
+/// Names and kinds of walls in order, as checkpoints hold them.
+std::vector<std::string> names_of_walls(const std::vector<dem::Wall>& walls);
+
 /// The table [motion] of a wall in that many dimensions; at rest if it is not there.
 dem::WallMotion read_motion(const Section& table, int dimension);
 

@@ -99,6 +99,12 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
 bool is_water_scene(const Scene& scene) { return scene.root().section("water").exists(); }
 
 WaterScene read_water_scene(const Communicator& comm, const Scene& scene) {
+    WaterScene water = read_water(comm, scene);
+    scene.finish();
+    return water;
+}
+
+WaterScene read_water(const Communicator& comm, const Scene& scene) {
     const Section root = scene.root();
     WaterScene water;
     WaterSetup& setup = water.simulation;
@@ -116,7 +122,6 @@ WaterScene read_water_scene(const Communicator& comm, const Scene& scene) {
     const Section run = root.section("run");
     setup.partition = read_partition(run);
     setup.rebalance_interval = read_rebalance_interval(run);
-    scene.finish();
     return water;
 }
 

@@ -29,6 +29,8 @@ bool is_water_scene(const Scene& scene);
 
 /// Reads everything a scene says. Throws SceneError (on every rank) with all faults at once. Collective.
 WaterScene read_water_scene(const Communicator& comm, const Scene& scene);
+/// The same for a scene that says more than that: faults are only recorded in it.
+WaterScene read_water(const Communicator& comm, const Scene& scene);
 
 /// An empty set with the fields the scene's models need.
 ParticleSet empty_water(const WaterSetup& setup);

@@ -72,7 +72,8 @@ def steps_and_stop(scene):
         return None, TO_THE_END[scene.name]
     if scene.name in STEPS_OF_SCENES:
         return STEPS_OF_SCENES[scene.name]
-    times = STEPS_OF_GRAINS if "dem" in tomllib.loads((scene / "scene.toml").read_text()) else 1
+    tables = tomllib.loads((scene / "scene.toml").read_text())
+    times = STEPS_OF_GRAINS if "dem" in tables and "water" not in tables else 1
     return times * STEPS, times * STOP
 
 

@@ -1,0 +1,80 @@
+#include "physics/coupling/exchange.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "physics/coupling/lift.hpp"
+
+namespace talus::coupling {
+
+namespace {
+
+/// (1 - exp(-z) - z)/z^2.
+double lag_of_relaxation(double z) {
+    constexpr double small = 1e-3;
+    return z < small ? -0.5 + z * (1.0 / 6 + z * (-1.0 / 24 + z / 120)) : (-std::expm1(-z) - z) / (z * z);
+}
+
+double volume_of(const MovingGrain& grain) {
+    return 4.0 / 3 * std::numbers::pi * grain.radius * grain.radius * grain.radius;
+}
+
+Surroundings surroundings(const ExchangeLaws& laws, const Gathered& fluid) {
+    const double fraction = 1 - fluid.solid_fraction;
+    return {.density = fluid.density / fraction,
+            .viscosity = laws.viscosity,
+            .fluid_fraction = std::max(fraction, laws.least_fluid_fraction)};
+}
+
+/// All forces of the fluid but drag and virtual mass.
+dem::Vector3<> lasting_force(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid,
+                             const Surroundings& around, double wet_share) {
+    const double volume = wet_share * volume_of(grain);
+    dem::Vector3<> force = laws.model == PressureModel::a ? volume * fluid.force_density
+                                                          : -(volume * around.density) * laws.gravity;
+    if (!laws.needs_vorticity()) return force;
+    const ShearedSphere sheared{.density = around.density,
+                                .viscosity = around.viscosity,
+                                .diameter = 2 * grain.radius,
+                                .slip = fluid.velocity - grain.velocity,
+                                .vorticity = fluid.vorticity};
+    if (laws.saffman) force += wet_share * saffman_mei_lift(sheared);
+    if (laws.magnus) force += wet_share * magnus_lift(sheared, grain.spin);
+    return force;
+}
+
+}  // namespace
+
+double drag_of(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid, double wet_share) {
+    return wet_share * drag_coefficient(laws.drag, laws.model, surroundings(laws, fluid), 2 * grain.radius,
+                                        norm(fluid.velocity - grain.velocity));
+}
+
+dem::Vector3<> mean_force(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid,
+                          double wet_share, double time_step) {
+    if (!(wet_share > 0)) return {};
+    const Surroundings around = surroundings(laws, fluid);
+    const dem::Vector3<> lasting = lasting_force(laws, grain, fluid, around, wet_share);
+    const double volume = wet_share * volume_of(grain), beta = drag_of(laws, grain, fluid, wet_share);
+    // One over the masses: a grain that is held has no end, nor has fluid that feels nothing.
+    const double carried = laws.virtual_mass * around.density * volume;
+    const double of_grain = grain.held ? 0.0 : 1 / (grain.mass + carried);
+    const double of_fluid = laws.feedback ? fluid.crowding / volume : 0.0;
+    const dem::Vector3<> others = of_grain * (grain.mass * grain.other_acceleration + lasting +
+                                              carried * (fluid.acceleration + fluid.reaction));
+    dem::Vector3<> drag;  // impulse
+    const dem::Vector3<> slip = fluid.velocity - grain.velocity;
+    const double rate = beta * (of_grain + of_fluid), z = rate * time_step;
+    if (z > 0) {
+        const dem::Vector3<> apart = others - (fluid.acceleration - of_fluid * lasting);
+        const double relaxed = -std::expm1(-z) / z;
+        drag = (beta * time_step) * (relaxed * slip + (lag_of_relaxation(z) * time_step) * apart);
+    }
+    if (grain.held) return lasting + carried * (fluid.acceleration + fluid.reaction) + (1 / time_step) * drag;
+    const dem::Vector3<> gained = time_step * others + of_grain * drag;
+    return (grain.mass / time_step) * gained - grain.mass * grain.other_acceleration;
+}
+
+}  // namespace talus::coupling

@@ -1,0 +1,186 @@
+#include "src/run/coupled_evolution.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <utility>
+
+#include "domain/coupling_fields.hpp"
+#include "domain/grain_fields.hpp"
+#include "io/checkpoint.hpp"
+#include "src/flow/contact_set.hpp"
+#include "src/run/options.hpp"
+#include "src/run/scene_checks.hpp"
+#include "src/setup/wall_reader.hpp"
+
+namespace talus {
+
+CoupledEvolution::CoupledEvolution(const Communicator& comm, const Scene& scene, std::optional<double> until)
+    : comm_(comm),
+      scene_(scene),
+      setup_(read_coupled_scene(comm, scene)),
+      end_time_(until.value_or(setup_.water.output.end_time)) {
+    check_snapshots(scene, output(), end_time_);
+    refuse_short_box(scene, setup_.water.simulation.box, setup_.kernel_radius);
+}
+
+std::vector<std::string> CoupledEvolution::warnings() const {
+    std::vector<std::string> found = setup_.warnings;
+    found.insert(found.end(), setup_.grains.warnings.begin(), setup_.grains.warnings.end());
+    return found;
+}
+
+void CoupledEvolution::create(const std::function<void()>&) {
+    simulation_.emplace(comm_, setup_.simulation(), make_water(comm_, setup_.water),
+                        make_grains(comm_, setup_.grains));
+}
+
+void CoupledEvolution::start() {
+    constexpr double most_overlap = 0.2;  // of the smaller radius
+    simulation_->start();
+    const double least = setup_.coupling.laws.least_fluid_fraction;
+    if (const CouplingTotals t = simulation_->totals(); t.least_fluid_fraction < least)
+        scene_.root().error(
+            "grains", fmt::format("they leave {:.3g} of the volume to the water somewhere at the start, "
+                                  "denser than grains pack; allowed: at least "
+                                  "coupling.least_fluid_fraction = {:.3g}",
+                                  t.least_fluid_fraction, least));
+    if (const double overlap = simulation_->grains().totals().greatest_overlap; overlap > most_overlap)
+        scene_.root().error("grains",
+                            fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; "
+                                        "allowed: {}",
+                                        overlap, most_overlap));
+    scene_.finish();
+}
+
+std::vector<std::string> CoupledEvolution::bodies() const {
+    std::vector<std::string> names;
+    const auto& walls = setup_.water.simulation.walls;
+    for (std::size_t b = 0; b < setup_.water.bodies.size(); ++b)
+        names.push_back(fmt::format("{} ({})", setup_.water.bodies[b].name,
+                                    !walls.empty() && walls[b] ? "wall" : "water"));
+    for (const GrainBody& body : setup_.grains.bodies) names.push_back(fmt::format("{} (grains)", body.name));
+    return names;
+}
+
+ReadCheckpoint CoupledEvolution::read(const std::filesystem::path& what,
+                                      const std::filesystem::path& output_folder) {
+    const auto began = std::chrono::steady_clock::now();
+    ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
+    ParticleSet water = empty_water(setup_.water.simulation), grains = empty_grains(setup_.grains.simulation),
+                contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.grains.simulation));
+    found.state = read_checkpoint(comm_, found.file, {&water, &grains, &contacts});
+    if (const std::vector<std::string> wanted = bodies(); found.state.materials != wanted)
+        throw AgreedError(exit_input_output,
+                          fmt::format("{}: is of the bodies {}; this scene has {}", found.file.string(),
+                                      fmt::join(found.state.materials, ", "), fmt::join(wanted, ", ")));
+    if (const std::vector<std::string> wanted = names_of_walls(setup_.grains.simulation.walls);
+        found.state.walls != wanted)
+        throw AgreedError(
+            exit_input_output,
+            fmt::format("{}: is of a scene with other walls of grains: {}; this one has {}",
+                        found.file.string(), fmt::join(found.state.walls, ", "), fmt::join(wanted, ", ")));
+    simulation_.emplace(comm_, setup_.simulation(), std::move(water), std::move(grains));
+    read_contacts_ = std::move(contacts);
+    found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    return found;
+}
+
+void CoupledEvolution::resume(const RunState& state) {
+    simulation_->resume(state.time, state.time_step, state.step, state.numbers, *read_contacts_);
+    read_contacts_.reset();
+}
+
+void CoupledEvolution::reset_counters() {
+    simulation_->water().reset_counters();
+    simulation_->grains().reset_counters();
+}
+
+void CoupledEvolution::describe(RunState& state) const {
+    state.materials = bodies();
+    state.walls = names_of_walls(setup_.grains.simulation.walls);
+    simulation_->save_numbers(state.numbers);
+}
+
+void CoupledEvolution::save(const WriteSets& write) {
+    const ParticleSet contacts = simulation_->grains().save();
+    write({&simulation_->water().particles(), &std::as_const(*simulation_).grains().grains(), &contacts});
+}
+
+std::vector<SnapshotField> CoupledEvolution::snapshot_fields() const {
+    std::vector<SnapshotField> fields;
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::mass, &field::density, &field::pressure, &field::body,
+             &coupling_field::solid_fraction})
+        fields.push_back({.field = info});
+    return fields;
+}
+
+std::vector<SnapshotSet> CoupledEvolution::more_snapshots() {
+    std::vector<SnapshotField> fields;
+    for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
+             &field::velocity, &field::angular_velocity, &field::radius, &field::mass, &field::body,
+             &coupling_field::fluid_acceleration})
+        fields.push_back({.field = info});
+    std::vector<SnapshotSet> sets;
+    sets.push_back({std::as_const(*simulation_).grains().grains(), fields});
+    return sets;
+}
+
+std::vector<CsvColumn> CoupledEvolution::diagnostics_columns() const {
+    std::vector<CsvColumn> columns{{"time", "s"},
+                                   {"time_step", "s"},
+                                   {"water_mass", "kg"},
+                                   {"water_kinetic_energy", "J"},
+                                   {"grain_mass", "kg"},
+                                   {"grain_kinetic_energy", "J"},
+                                   {"greatest_water_speed", "m s-1"},
+                                   {"greatest_grain_speed", "m s-1"},
+                                   {"least_pressure", "Pa"},
+                                   {"greatest_pressure", "Pa"}};
+    for (const char* of : {"water", "grain"})
+        for (const char axis : {'x', 'y', 'z'})
+            columns.push_back({fmt::format("{}_momentum_{}", of, axis), "kg m s-1"});
+    for (const char axis : {'x', 'y', 'z'}) columns.push_back({fmt::format("force_on_grains_{}", axis), "N"});
+    for (const char axis : {'x', 'y', 'z'}) columns.push_back({fmt::format("least_water_{}", axis), "m"});
+    for (const char axis : {'x', 'y', 'z'}) columns.push_back({fmt::format("greatest_water_{}", axis), "m"});
+    for (const char axis : {'x', 'y', 'z'}) columns.push_back({fmt::format("mean_grain_{}", axis), "m"});
+    columns.insert(columns.end(), {{"exchange_imbalance", "1"},
+                                   {"least_fluid_fraction", "1"},
+                                   {"clipped", "1"},
+                                   {"grain_volume", "m3"},
+                                   {"spread_volume", "m3"},
+                                   {"substeps", "1"},
+                                   {"contacts", "1"}});
+    return columns;
+}
+
+Diagnostics CoupledEvolution::diagnostics() {
+    const WaterTotals w = simulation_->water().totals();
+    const GrainTotals g = simulation_->grains().totals();
+    const CouplingTotals c = simulation_->totals();
+    Diagnostics found{{time(), time_step(), w.mass, w.kinetic_energy, g.mass, g.kinetic_energy,
+                       w.greatest_speed, g.greatest_speed, w.least_pressure, w.greatest_pressure},
+                      0};
+    for (const auto& values :
+         {w.momentum, g.momentum, c.force, w.least_place, w.greatest_place, c.mean_place})
+        found.row.insert(found.row.end(), values.begin(), values.end());
+    found.row.insert(
+        found.row.end(),
+        {c.imbalance, c.least_fluid_fraction, static_cast<double>(c.clipped), c.grain_volume, c.spread_volume,
+         static_cast<double>(simulation_->substeps()), static_cast<double>(g.contacts)});
+    return found;
+}
+
+std::string CoupledEvolution::summary() const {
+    const CouplingTotals c = simulation_->totals();
+    return fmt::format(
+        "water and {} grains: forces balance to {:.1e}, least share of water {:.3g}, {} of its particles "
+        "below the least that counts, {:.6g} of the grains' volume seen by the water; {} steps of grains "
+        "in the next of the water",
+        simulation_->grains().total_grains(), c.imbalance, c.least_fluid_fraction, c.clipped,
+        c.grain_volume > 0 ? c.spread_volume / c.grain_volume : 0.0, simulation_->substeps());
+}
+
+}  // namespace talus
