@@ -49,7 +49,7 @@ struct Settings {
     double viscosity = 0;             ///< [Pa s]
     double artificial_viscosity = 0;  ///< alpha [1]
     double density_diffusion = 0.1;   ///< delta [1]
-    double shifting = 0;              ///< of particles towards even places, over that of the source [1]
+    double shifting = 0;              ///< of particles towards even places, see force_pass() [1]
     std::array<double, 3> gravity{};  ///< [m/s2]
     /// Gravity along axes that have an end, whose weight pressure bears at rest [m/s2].
     std::array<double, 3> bearing{};

@@ -65,6 +65,8 @@ class WallPass {
         const Tait& state = settings_.state;
         const double sound2 = state.sound_speed * state.sound_speed;
         const std::array<double, 3> weight = array_of((settings_.radius() / sound2) * wall.weight);
+        const auto at_rest =
+            static_cast<float>(1 - background());  // rho/rho0 = 1 + (p - p0)/(rho0 c0^2), nearly
         const std::array<const float*, value_count> from = water_.columns();
         FloatLaneSum all, pressure;
         std::array<FloatLaneSum, D> velocity{};
@@ -78,7 +80,7 @@ class WallPass {
             const FloatLanes q = sqrt(r2), x = max(1 - q, FloatLanes(0.0F)), x2 = x * x;
             const FloatLanes share = x2 * x2 * (1 + 4 * q), p = load(from[at_pressure] + k);
             all.add(k, share);
-            pressure.add(k, share * (p + (1 + p) * depth));  // rho/rho0 = 1 + p/(rho0 c0^2), nearly
+            pressure.add(k, share * (p + (at_rest + p) * depth));
             for (int d = 0; d < D; ++d) velocity[d].add(k, share * load(from[at_velocity + d] + k));
         }
         const double total = all.total();
@@ -92,7 +94,12 @@ class WallPass {
             velocity_[d][i] =
                 static_cast<float>(2 * own[d] / state.sound_speed - velocity[d].total() / total);
         partner_pressure_[i] = static_cast<float>(pressure_[i] / (state.reference_density * sound2));
-        volume_[i] /= 1 + partner_pressure_[i];  // as density is nearly 1 + p/(rho0 c0^2)
+        volume_[i] /= at_rest + partner_pressure_[i];
+    }
+    /// p0/(rho0 c0^2).
+    double background() const {
+        const Tait& state = settings_.state;
+        return state.background_pressure / (state.reference_density * state.sound_speed * state.sound_speed);
     }
 
     const Settings& settings_;

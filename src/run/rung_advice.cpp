@@ -24,7 +24,8 @@ double aspect_of(const DepthScene& scene, const DepthTotals& start) {
     return length > 0 ? start.greatest_depth / length : 0;
 }
 
-/// Longest time in which drag ends the relative velocity, with the shares of the releases [s].
+/// Longest time in which drag ends the relative velocity, with the shares of the releases [s]; 0: none holds
+/// both phases.
 double drag_time(const DepthScene& scene, const depth::TwoPhase& phases, double depth) {
     double longest = 0;
     for (const Release& release : scene.releases) {
@@ -39,6 +40,13 @@ double drag_time(const DepthScene& scene, const depth::TwoPhase& phases, double 
 
 std::string of_phases(const DepthScene& scene, const depth::TwoPhase& phases, double depth) {
     const double time = drag_time(scene, phases, depth);
+    const auto all = [&](double share) {
+        return std::all_of(scene.releases.begin(), scene.releases.end(),
+                           [share](const Release& release) { return release.solid_fraction == share; });
+    };
+    if (all(0) || all(1))
+        return "one material, without [two_phase]: all releases are of one phase; a fifth of the cost";
+    if (time == 0) return "this one: solid and water start apart";
     if (!(long_ago * time < 1e-2 * scene.output.end_time))
         return fmt::format("this one: drag takes {:.3g} s to join solid and water, which is not short", time);
     return fmt::format(
@@ -67,7 +75,8 @@ std::string rung_advice(const DepthScene& scene, const DepthTotals& start) {
     const DepthSetup& setup = scene.simulation;
     const double aspect = aspect_of(scene, start);
     const bool is_soil = friction_coefficient(setup.friction) > 0;
-    if (is_soil && aspect > deep)
+    const bool one = scene.releases.size() == 1;  // the length of several tells nothing of each
+    if (is_soil && one && aspect > deep)
         return fmt::format(
             "a continuum in a plane (as runs/column_collapse): the flow is {:.2g} times as deep as long at "
             "the "
@@ -76,6 +85,9 @@ std::string rung_advice(const DepthScene& scene, const DepthTotals& start) {
             aspect, deep);
     if (setup.settings.two_phase) return of_phases(scene, *setup.settings.two_phase, start.greatest_depth);
     if (setup.pore_pressure) return of_pores(scene, *setup.pore_pressure, start.greatest_depth);
+    const auto& boundary = setup.box.boundary;
+    if (!one || std::find(boundary.begin(), boundary.end(), Boundary::reflecting) != boundary.end())
+        return "this one: releases that meet each other or a wall have no closed form";
     const auto* coulomb = std::get_if<depth::Coulomb>(&setup.friction);
     if (!coulomb || !setup.terrain->is_plane() || coulomb->cohesion > 0 || setup.settings.entrainment > 0)
         return "this one: neither the ground nor the bed's law has a closed form";

@@ -40,21 +40,6 @@ void warn_of_spin(const Body& body, const Material& material, double gravitation
                     body.name, rotation_period(spin) / 3600, body.density, rotation_period(limit) / 3600));
 }
 
-/// Matter near a wall that is thinner than forces reach misses partners.
-void warn_of_thin_wall(const Body& wall, const sph::Settings& sph, int dimension,
-                       std::vector<std::string>& found) {
-    const BoxShape around = bounds(wall.shape, dimension);
-    double thickness = std::numeric_limits<double>::infinity();
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
-        thickness = std::min(thickness, around.upper[a] - around.lower[a]);
-    const double range = sph.force_support() * sph.eta * wall.spacing;
-    if (thickness > 0.9 * range) return;
-    found.push_back(
-        fmt::format("body '{}' is a wall {:.3g} m thick, and forces reach {:.3g} m: what lies on it "
-                    "will sink in",
-                    wall.name, thickness, range));
-}
-
 /// Partners within the kernel's support, on average.
 double partners(const sph::Settings& sph, int dimension) {
     const double reach = sph.kernel_support() * sph.eta;  // [spacings]
@@ -107,6 +92,18 @@ void warn_of_time_step(const sph::Settings& sph, std::vector<std::string>& found
 
 }  // namespace
 
+void warn_of_thin_wall(const Body& wall, double range, int dimension, std::vector<std::string>& found) {
+    const BoxShape around = bounds(wall.shape, dimension);
+    double thickness = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+        thickness = std::min(thickness, around.upper[a] - around.lower[a]);
+    if (thickness > 0.9 * range) return;
+    found.push_back(
+        fmt::format("body '{}' is a wall {:.3g} m thick, and forces reach {:.3g} m: what lies on it "
+                    "will sink in",
+                    wall.name, thickness, range));
+}
+
 std::vector<std::string> warnings(const SceneSetup& setup) {
     std::vector<std::string> found;
     const Setup& simulation = setup.simulation;
@@ -115,7 +112,9 @@ std::vector<std::string> warnings(const SceneSetup& setup) {
         warn_of_spin(setup.bodies[b], simulation.materials[b], setup.gravitational_constant, found);
     const sph::Settings& sph = simulation.sph;
     for (std::size_t b = 0; b < simulation.walls.size(); ++b)
-        if (simulation.walls[b]) warn_of_thin_wall(setup.bodies[b], sph, simulation.box.dimension, found);
+        if (simulation.walls[b])
+            warn_of_thin_wall(setup.bodies[b], sph.force_support() * sph.eta * setup.bodies[b].spacing,
+                              simulation.box.dimension, found);
     warn_of_pairing(sph, simulation.box.dimension, found);
     warn_of_interpolation(simulation, found);
     warn_of_time_step(sph, found);

@@ -11,4 +11,8 @@ namespace talus {
 /// (a few milliseconds).
 std::vector<std::string> warnings(const SceneSetup& setup);
 
+/// Adds a note if a wall of particles is thinner than forces reach, `range` [m]: matter near it misses
+/// partners.
+void warn_of_thin_wall(const Body& wall, double range, int dimension, std::vector<std::string>& found);
+
 }  // namespace talus

@@ -9,6 +9,7 @@
 #include "io/checkpoint.hpp"
 #include "src/run/options.hpp"
 #include "src/run/scene_checks.hpp"
+#include "src/run/warnings.hpp"
 
 namespace talus {
 
@@ -28,7 +29,11 @@ std::vector<std::string> WaterEvolution::warnings() const {
         found.emplace_back(
             "the water has neither water.viscosity nor water.artificial_viscosity: sound in it "
             "is damped by the diffusion of density alone");
-    for (int axis = 0; axis < setup_.simulation.box.dimension; ++axis) {
+    const int dimension = setup_.simulation.box.dimension;
+    for (std::size_t b = 0; b < setup_.bodies.size(); ++b)
+        if (setup_.simulation.walls[b])
+            warn_of_thin_wall(setup_.bodies[b], settings.radius(), dimension, found);
+    for (int axis = 0; axis < dimension; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
         if (setup_.simulation.box.boundary[a] == Boundary::reflecting && settings.gravity[a] != 0)
             found.push_back(

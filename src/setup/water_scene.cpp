@@ -65,6 +65,9 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
                                   .seed = water.seed};
         const Body body = read_body_form(table, setup.settings.state.reference_density, context);
         refuse_same_name(table, water.bodies, body.name);
+        if (table.has("density"))
+            table.error("density",
+                        "is not of a body: water.density is that of all water, `surface` gives its weight");
         water.bodies.push_back(body);
         setup.walls.push_back(read_body_wall(table, box.dimension, false));
         water.surface.emplace_back();
@@ -79,12 +82,14 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
     const auto spacing = [&](std::size_t b) {
         return std::pow(water.census[b].particle_volume, 1.0 / box.dimension);
     };
+    const auto first = static_cast<std::size_t>(
+        std::find(setup.walls.begin(), setup.walls.end(), std::nullopt) - setup.walls.begin());
+    if (first < tables.size() && !scene.faulty()) water.spacing = spacing(first);
     for (std::size_t b = 0; b < tables.size() && !scene.faulty(); ++b) {
         constexpr double alike = 0.1;
-        if (water.spacing == 0 && !setup.walls[b]) water.spacing = spacing(b);
         if (water.spacing > 0 && std::abs(spacing(b) / water.spacing - 1) > alike)
             tables[b].error("spacing",
-                            fmt::format("particles are {:.4g} m apart, those of the water before {:.4g} m; "
+                            fmt::format("particles are {:.4g} m apart, those of the water {:.4g} m; "
                                         "allowed: the same within a tenth",
                                         spacing(b), water.spacing));
     }
@@ -133,10 +138,11 @@ ParticleSet empty_water(const WaterSetup& setup) {
 
 namespace {
 
-/// Gives a body the pressure of its own weight under a level surface, and the mass of its compressed water.
+/// Gives a body the pressure of its own weight, along axes that have an end, under a level surface, and the
+/// mass of its compressed water.
 void put_weight(const WaterSetup& setup, double surface, std::uint8_t body, ParticleSet& particles) {
     const water::Settings& settings = setup.settings;
-    const auto& g = settings.gravity;
+    const auto& g = settings.bearing;
     const double gravity = std::hypot(g[0], g[1], g[2]);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (particles.data(field::body)[i] != body) continue;

@@ -56,6 +56,13 @@ class Water(Case):
 
     def test_a_wall_of_other_spacing(self):
         self.check('wall = "free_slip"', 'spacing = 0.04\nwall = "free_slip"', r"body\[1\]\.spacing = .*within a tenth")
+        begin, second, end = (SCENE.index(word) for word in ("[[body]]", '[[body]]\nname = "floor"', "[run]"))
+        turned = SCENE[:begin] + SCENE[second:end] + SCENE[begin:second] + SCENE[end:]
+        scene = self.scene(turned.replace('wall = "free_slip"', 'spacing = 0.04\nwall = "free_slip"'))
+        self.assert_fails(talus("check", scene), 2, r"body\[0\]\.spacing = .*within a tenth")
+
+    def test_a_density_of_a_body(self):
+        self.check("surface = 0.2", "density = 1100", r"body\[0\]\.density = .*water\.density")
 
     def test_a_wall_with_a_velocity(self):
         self.check('wall = "free_slip"', 'velocity = [1, 0]\nwall = "free_slip"', r"body\[1\]\.velocity = .*\[body\.motion\]")
@@ -64,7 +71,8 @@ class Water(Case):
         self.check('"floor"', '"water"', r"body\[1\]\.name = .*another of the name 'water'")
 
     def test_a_box_shorter_than_the_kernel(self):
-        self.check("[water]", '[box]\nboundaries = ["open", "periodic"]\nlower = [0, -0.01]\nupper = [0, 0.01]\n[water]', r"box")
+        self.check("[water]", '[box]\nboundaries = ["open", "periodic"]\nlower = [-1, 0]\nupper = [1, 0.05]\n[water]',
+                   r"box.* along y")
 
     def test_water_that_flies_apart(self):
         scene = self.scene(SCENE.replace("surface = 0.2\n", "velocity = [1e200, 0]\n"))
@@ -74,6 +82,9 @@ class Water(Case):
         done = talus("check", self.scene(SCENE.replace("artificial_viscosity = 0.02\n", "")), ranks=0)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertRegex(done.stdout, r"note: the water has neither water\.viscosity nor")
+        self.assertNotRegex(done.stdout, r"note: body 'floor'")
+        done = talus("check", self.scene(SCENE.replace("[-0.08, -0.08]", "[-0.08, -0.02]")), ranks=0)
+        self.assertRegex(done.stdout, r"note: body 'floor' is a wall 0\.02 m thick")
 
     def test_a_restart_with_other_bodies(self):
         done = talus("run", self.scene(SCENE), "--out", self.out, "--steps", 2)

@@ -68,6 +68,13 @@ class Slurm(unittest.TestCase):
         code, output = self.job(limit=0, kind=signal.SIGTERM)
         self.assertEqual((code, self.requeued()), (0, ["requeue 7"]), output)
 
+    def test_a_run_that_is_stopped_by_hand_ends_the_chain(self):
+        self.out.mkdir()
+        (self.out / "stop").touch()
+        code, output = self.job()
+        self.assertEqual((code, self.requeued()), (75, []), output)
+        self.assertIn("file 'stop'", output)
+
     def test_a_run_that_fails_ends_the_chain(self):
         code, output = self.job("--set", "materials.basalt.densty=1")
         self.assertEqual((code, self.requeued()), (2, []), output)
