@@ -60,8 +60,10 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
     const double* solid = particles.has(coupling_field::solid_fraction)
                               ? particles.data(coupling_field::solid_fraction)
                               : nullptr;
+    const std::uint64_t* id = particles.data(field::id);
     double least_share = 1;
     for (std::size_t i = 0; i < particles.size(); ++i) {
+        if (!(density[i] > 0)) return {0, id[i], "a density that is not positive"};
         const double in_plane = a[0][i] * a[0][i] + a[1][i] * a[1][i];
         acceleration2.take(dimension == 2 ? in_plane : in_plane + a[2][i] * a[2][i], i);
         // Of one particle: the greatest of each over a rank would depend on who owns what.
@@ -79,7 +81,6 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
                  viscous = settings.viscosity > 0 ? viscous_share * h * h * settings.state.reference_density *
                                                         least_share / settings.viscosity
                                                   : infinity;
-    const std::uint64_t* id = particles.data(field::id);
     if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
     if (sound < accelerated) return {sound, id[speed.at], "sound"};
     return {accelerated, id[acceleration2.at], "acceleration"};

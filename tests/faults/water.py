@@ -76,7 +76,7 @@ class Water(Case):
 
     def test_water_that_flies_apart(self):
         scene = self.scene(SCENE.replace("surface = 0.2\n", "velocity = [1e200, 0]\n"))
-        self.assert_fails(talus("run", scene, "--out", self.out), 1, r"particle \d+|not finite|time step has fallen")
+        self.assert_fails(talus("run", scene, "--out", self.out), 1, r"(of|at) particle \d+")
 
     def test_notes(self):
         done = talus("check", self.scene(SCENE.replace("artificial_viscosity = 0.02\n", "")), ranks=0)

@@ -1,11 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "domain/random.hpp"
+#include "io/agree.hpp"
 #include "physics/dem/vectors.hpp"
 #include "tests/support/by_id.hpp"
 #include "tests/support/coupled_run.hpp"
@@ -139,6 +143,33 @@ TEST(CoupledRunSameBits, AfterInterruption) {
     for (int k = 5; k < steps; ++k) second.step();
     second.grains().save();
     EXPECT_TRUE(outcome_of(world, second) == expected);
+}
+
+/// What a run says if one velocity is spoilt from the start, of a grain or of water.
+std::string said_of_nan(bool of_grain, std::uint64_t id) {
+    const Communicator world(MPI_COMM_WORLD);
+    const CoupledScene scene = bath(world, PartitionMethod::cheapest);
+    ParticleSet water = make_water(world, scene.water), grains = make_grains(world, scene.grains);
+    ParticleSet& particles = of_grain ? grains : water;
+    const auto ids = std::as_const(particles).own(field::id);
+    if (const auto found = std::find(ids.begin(), ids.end(), id); found != ids.end())
+        particles.data(field::velocity)[found - ids.begin()] = std::numeric_limits<double>::quiet_NaN();
+    try {
+        CoupledSimulation simulation(world, scene.simulation(), std::move(water), std::move(grains));
+        simulation.start();
+        simulation.step();
+    } catch (const AgreedError& failure) {
+        EXPECT_EQ(failure.exit_code, 1);
+        return failure.what();
+    }
+    return "nothing";
+}
+
+// On all ranks, with what it is of.
+TEST(CoupledFaults, NanIsNamed) {
+    const std::string of_grain = said_of_nan(true, 9), of_water = said_of_nan(false, 9);
+    EXPECT_NE(of_grain.find("grain 9"), std::string::npos) << of_grain;
+    EXPECT_NE(of_water.find("is not finite"), std::string::npos) << of_water;
 }
 
 }  // namespace

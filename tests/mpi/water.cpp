@@ -1,0 +1,160 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "io/agree.hpp"
+#include "src/setup/water_scene.hpp"
+#include "tests/support/gathered.hpp"
+
+namespace talus::test {
+namespace {
+
+/// A heap of water that falls apart in a tank whose floor moves, with all that water may have.
+constexpr const char* plane = R"(dimension = 2
+[box]
+boundaries = ["reflecting", "open"]
+lower = [0, -0.1]
+upper = [0.8, 1]
+[water]
+greatest_speed = 3
+gravity = [0, -9.81]
+viscosity = 0.5
+artificial_viscosity = 0.05
+shifting = 1
+[[body]]
+name = "water"
+shape = "box"
+lower = [0, 0]
+upper = [0.3, 0.4]
+lattice = "cubic"
+spacing = 0.02
+surface = 0.4
+[[body]]
+name = "floor"
+shape = "box"
+lower = [0, -0.1]
+upper = [0.8, 0]
+lattice = "cubic"
+wall = "no_slip"
+motion = { velocity = [0, 0.2] }
+[run]
+end_time = 1
+rebalance_interval = 2
+)";
+
+/// The same in a box that is periodic across, with a floor that slips.
+constexpr const char* space = R"(dimension = 3
+[box]
+boundaries = ["reflecting", "periodic", "open"]
+lower = [0, 0, -0.16]
+upper = [0.64, 0.32, 1]
+[water]
+greatest_speed = 3
+gravity = [0, 0, -9.81]
+artificial_viscosity = 0.05
+[[body]]
+name = "water"
+shape = "box"
+lower = [0, 0, 0]
+upper = [0.24, 0.32, 0.32]
+lattice = "cubic"
+spacing = 0.04
+surface = 0.32
+[[body]]
+name = "floor"
+shape = "box"
+lower = [0, 0, -0.16]
+upper = [0.64, 0.32, 0]
+lattice = "cubic"
+wall = "free_slip"
+[run]
+end_time = 1
+rebalance_interval = 2
+)";
+
+constexpr int steps = 20, stop = 7;
+
+WaterScene scene_of(const Communicator& comm, const char* text, PartitionMethod method) {
+    WaterScene scene = read_water_scene(comm, Scene::parse(text, "water.toml"));
+    scene.simulation.partition = method;
+    return scene;
+}
+
+GatheredState run(const Communicator& comm, const char* text, PartitionMethod method) {
+    const WaterScene scene = scene_of(comm, text, method);
+    WaterSimulation simulation(comm, scene.simulation, make_water(comm, scene));
+    simulation.start();
+    for (int k = 0; k < steps; ++k) simulation.step();
+    return gather_state(comm, simulation.particles());
+}
+
+class WaterSameBits : public testing::TestWithParam<const char*> {};
+
+TEST_P(WaterSameBits, OnAnyRanks) {
+    const Communicator alone(MPI_COMM_SELF), world(MPI_COMM_WORLD);
+    const GatheredState expected = run(alone, GetParam(), PartitionMethod::slabs);
+    EXPECT_GT(expected.ids.size(), 400u);
+    for (const PartitionMethod method : {PartitionMethod::cheapest, PartitionMethod::scrambled})
+        EXPECT_TRUE(run(world, GetParam(), method) == expected);
+}
+
+// Stopped, and gone on with by ranks that hold other particles.
+TEST_P(WaterSameBits, AfterInterruption) {
+    const Communicator alone(MPI_COMM_SELF), world(MPI_COMM_WORLD);
+    const WaterScene scene = scene_of(world, GetParam(), PartitionMethod::scrambled);
+    WaterSimulation first(world, scene.simulation, make_water(world, scene));
+    first.start();
+    for (int k = 0; k < stop; ++k) first.step();
+    const GatheredState saved = gather_state(world, first.particles());
+    std::map<std::string, double> numbers;
+    first.save_numbers(numbers);
+    ParticleSet particles = empty_water(scene.simulation);
+    fill(particles, saved, [&, total = saved.ids.size()](std::size_t k) {
+        return k * static_cast<std::size_t>(world.size()) / total == static_cast<std::size_t>(world.rank());
+    });
+    WaterSetup other = scene.simulation;
+    other.partition = PartitionMethod::bisection;
+    WaterSimulation second(world, other, std::move(particles));
+    second.resume(first.time(), first.time_step(), first.step_count(), numbers);
+    for (int k = stop; k < steps; ++k) second.step();
+    EXPECT_TRUE(gather_state(world, second.particles()) == run(alone, GetParam(), PartitionMethod::slabs));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space),
+                         [](const auto& scene) { return scene.index == 0 ? "plane" : "space"; });
+
+/// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that has it.
+std::string said_after(const Field<double>& field, double value, std::uint64_t id) {
+    const Communicator world(MPI_COMM_WORLD);
+    const WaterScene scene = scene_of(world, plane, PartitionMethod::cheapest);
+    WaterSimulation simulation(world, scene.simulation, make_water(world, scene));
+    simulation.start();
+    simulation.step();
+    ParticleSet& particles = simulation.access().particles;
+    const auto ids = std::as_const(particles).own(field::id);
+    if (const auto found = std::find(ids.begin(), ids.end(), id); found != ids.end())
+        particles.data(field)[found - ids.begin()] = value;
+    try {
+        simulation.step();
+    } catch (const AgreedError& failure) {
+        EXPECT_EQ(failure.exit_code, 1);
+        return failure.what();
+    }
+    return "nothing";
+}
+
+// A value that is not finite, or a density that is none, ends the run on all ranks with the particle it is of.
+TEST(WaterFaults, AreNamed) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_NE(said_after(field::velocity, nan, 17).find("in set 'water' is not finite"), std::string::npos);
+    EXPECT_NE(said_after(field::density, nan, 17).find("in set 'water' is not finite"), std::string::npos);
+    const std::string said = said_after(field::density, -500, 17);
+    EXPECT_NE(said.find("a density that is not positive at particle 17"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace talus::test
