@@ -127,7 +127,8 @@ TEST_P(WaterSameBits, AfterInterruption) {
 INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space),
                          [](const auto& scene) { return scene.index == 0 ? "plane" : "space"; });
 
-/// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that has it.
+/// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that
+/// has it.
 std::string said_after(const Field<double>& field, double value, std::uint64_t id) {
     const Communicator world(MPI_COMM_WORLD);
     const WaterScene scene = scene_of(world, plane, PartitionMethod::cheapest);
@@ -147,7 +148,8 @@ std::string said_after(const Field<double>& field, double value, std::uint64_t i
     return "nothing";
 }
 
-// A value that is not finite, or a density that is none, ends the run on all ranks with the particle it is of.
+// A value that is not finite, or a density that is none, ends the run on all ranks with the particle it is
+// of.
 TEST(WaterFaults, AreNamed) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_NE(said_after(field::velocity, nan, 17).find("in set 'water' is not finite"), std::string::npos);

@@ -1,8 +1,6 @@
 """One event, models of growing cost: the run-out of a column as high as long, by every rung that can tell it."""
 import pathlib
-import resource
 import sys
-import tempfile
 
 import numpy as np
 
@@ -10,6 +8,7 @@ TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TOP / "tools"))
 from charts import column_collapse as grains  # noqa: E402
 from charts import soil_collapse as soil  # noqa: E402
+from ladder_rungs import draw_rungs, measured  # noqa: E402
 
 TITLE = "Run-out of a column, height = length, against the cost of its model"
 PROGRAMS = ["talus"]
@@ -52,30 +51,13 @@ RUNGS = [  # name, family, run(program, folder) -> (run-out over length, number 
 ]
 
 
-def processor_time():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def measure(build):
-    rows = []
-    for name, family, run in RUNGS:
-        with tempfile.TemporaryDirectory() as folder:
-            before = processor_time()
-            run_out, parts = run(build / "talus", folder)
-            rows.append({"rung": name, "family": family, "run_out": float(run_out), "parts": parts,
-                         "processor_seconds": processor_time() - before, "low": BAND[0], "high": BAND[1]})
-    return rows
+    return [row | {"low": BAND[0], "high": BAND[1]} for row in measured(RUNGS, build / "talus")]
 
 
 def draw(rows, plt):
     figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
     axes.axhspan(rows[0]["low"], rows[0]["high"], color="#dddddd", label="experiments (Lube, Lajeunesse)")
-    colours = {"block": "#444444", "depth": "#2b8a5a", "continuum": "#1f6fb2", "grains": "#c2571a"}
-    for row in rows:
-        cost = max(row["processor_seconds"], 1e-3)
-        axes.semilogx(cost, row["run_out"], "o", color=colours[row["family"]])
-        axes.annotate(row["rung"], (cost, row["run_out"]), textcoords="offset points", xytext=(4, 4), fontsize=7)
-    axes.set(xlabel="processor time [s]; closed forms at 1e-3", ylabel="run-out / length of the column", xlim=(5e-4, 2e4))
+    draw_rungs(axes, rows, lambda row: row["rung"])
     axes.legend(fontsize=8)
     return figure

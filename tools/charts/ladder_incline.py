@@ -2,10 +2,8 @@
 tell it. Gravity is tilted instead of the ground."""
 import os
 import pathlib
-import resource
 import subprocess
 import sys
-import tempfile
 
 import h5py
 import numpy as np
@@ -14,6 +12,7 @@ TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TOP / "tools"))
 from charts import column_collapse as grains  # noqa: E402
 from charts import soil_collapse as soil  # noqa: E402
+from ladder_rungs import draw_rungs, measured  # noqa: E402
 from talus_output import snapshot_series  # noqa: E402
 
 TITLE = "Run-out of a column, height = length, down 15 degrees, against the cost of its model"
@@ -90,33 +89,15 @@ RUNGS_OF_LOWER = [(f"{name}, height / length {aspect}", "lower", run) for aspect
                                     ("Drucker-Prager, 5 mm", continuum(DRUCKER_PRAGER, 0.005, aspect)))]
 
 
-def processor_time():
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
 def measure(build):
-    rows = []
-    for name, family, run in RUNGS + RUNGS_OF_LOWER:
-        with tempfile.TemporaryDirectory() as folder:
-            before = processor_time()
-            run_out, parts = run(build / "talus", folder)
-            rows.append({"rung": name, "family": family, "run_out": float(run_out), "parts": parts,
-                         "processor_seconds": processor_time() - before})
-    return rows
+    return measured(RUNGS + RUNGS_OF_LOWER, build / "talus")
 
 
 def draw(rows, plt):
     figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
-    colours = {"block": "#444444", "depth": "#2b8a5a", "continuum": "#1f6fb2", "grains": "#c2571a"}
     rows = [row for row in rows if row["family"] != "lower"]
     reference = next(row["run_out"] for row in rows if row["rung"] == REFERENCE)
     axes.axhline(reference, color="#dddddd", linewidth=4, zorder=0)
-    for row in rows:
-        cost = max(row["processor_seconds"], 1e-3)
-        axes.semilogx(cost, row["run_out"], "o", color=colours[row["family"]])
-        place = (4, -10) if "pore" in row["rung"] else (-95, 4) if "10 mm" in row["rung"] else (4, 4)
-        axes.annotate(f"{row['rung']}: {row['run_out'] / reference - 1:+.0%}", (cost, row["run_out"]),
-                      textcoords="offset points", xytext=place, fontsize=7)
-    axes.set(xlabel="processor time [s]; closed forms at 1e-3", ylabel="run-out / length of the column", xlim=(5e-4, 2e4))
+    draw_rungs(axes, rows, lambda row: f"{row['rung']}: {row['run_out'] / reference - 1:+.0%}",
+               lambda row: (4, -10) if "pore" in row["rung"] else (-95, 4) if "10 mm" in row["rung"] else (4, 4))
     return figure
