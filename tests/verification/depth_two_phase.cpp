@@ -169,7 +169,9 @@ TEST(DepthTwoPhase, WavesWithoutDragHaveTheirSpeeds) {
         }
         fmt::print("wave of {:.4f} m/s: error of the speed {:.2e}, {:.2e}\n", std::sqrt(wave.speed2),
                    errors[0], errors[1]);
-        EXPECT_LT(errors.back(), 0.075);
+        // Twice and 1.4 times what is measured: the slow wave is the small difference of great forces. That
+        // errors fall with the columns tells right from nearly right.
+        EXPECT_LT(errors.back(), wave.speed2 > 4 ? 0.002 : 0.075);
         EXPECT_LT(errors.back(), 0.6 * errors.front());
     }
 }
@@ -246,15 +248,17 @@ TEST(DepthTwoPhase, StrongDragIsASingleMaterial) {
             "strong drag: {} columns, L1 of depth {:.2e} m, of velocity {:.2e} m/s, apart by {:.2e} m\n",
             half, depths.back(), speed, apart);
         if (columns == 800) {
-            EXPECT_LT(speed, 0.02);
+            EXPECT_LT(speed, 0.01);  // a third above what is measured, as below; the order is the test
         }
     }
-    EXPECT_LT(depths.back(), 5e-3);
+    EXPECT_LT(depths.back(), 2.1e-3);
     EXPECT_GT(order_of(depths.front(), depths.back()) / 2, 0.7);
 }
 
 // Where only one phase is, it is a dam break of that alone, whatever the drag: solid on dry ground, water the
 // same.
+/// Twice the error of a flow without phases with as many columns (runs/dam_break: 1.7e-3 m), for the wider
+/// kernel.
 TEST(DepthTwoPhase, EachAloneIsRitters) {
     const Communicator comm(MPI_COMM_SELF);
     const reference::DamBreak exact(1, 0, gravity);
