@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "io/checkpoint.hpp"
+#include "physics/water/sound_waves.hpp"
 #include "src/run/options.hpp"
 #include "src/run/scene_checks.hpp"
 #include "src/run/warnings.hpp"
@@ -22,14 +24,36 @@ WaterEvolution::WaterEvolution(const Communicator& comm, const Scene& scene, std
     refuse_short_box(scene, setup_.simulation.box, setup_.simulation.settings.radius());
 }
 
+namespace {
+
+/// Sound that the time step makes grow: physics/water/sound_waves.hpp, tests/stability/water.cpp.
+void warn_of_sound(const water::Settings& settings, int dimension, std::vector<std::string>& found) {
+    constexpr double slow = 1e-4;  // a thousand steps then make a tenth more of it
+    const double step = settings.courant * settings.smoothing_length / settings.state.sound_speed,
+                 growth = water::fastest_growing(settings, dimension, step).growth;
+    if (growth < 1 + slow) return;
+    water::Settings diffusive = settings;
+    diffusive.density_diffusion = 0.1;
+    std::string remedy;
+    if (const double most = water::greatest_courant(diffusive, dimension, 1);
+        settings.density_diffusion < diffusive.density_diffusion && settings.courant <= most)
+        remedy = fmt::format("water.density_diffusion = {}", diffusive.density_diffusion);
+    else
+        remedy =
+            fmt::format("water.courant = {:.2g}", 0.95 * water::greatest_courant(settings, dimension, 1));
+    found.push_back(
+        fmt::format("sound in still water grows {:.2g} times in a hundred steps with water.courant = {} and "
+                    "water.density_diffusion = {}; {} damps it",
+                    std::pow(growth, 100), settings.courant, settings.density_diffusion, remedy));
+}
+
+}  // namespace
+
 std::vector<std::string> WaterEvolution::warnings() const {
     std::vector<std::string> found;
     const water::Settings& settings = setup_.simulation.settings;
-    if (settings.viscosity == 0 && settings.artificial_viscosity == 0)
-        found.emplace_back(
-            "the water has neither water.viscosity nor water.artificial_viscosity: sound in it "
-            "is damped by the diffusion of density alone");
     const int dimension = setup_.simulation.box.dimension;
+    if (settings.artificial_viscosity == 0) warn_of_sound(settings, dimension, found);
     for (std::size_t b = 0; b < setup_.bodies.size(); ++b)
         if (setup_.simulation.walls[b])
             warn_of_thin_wall(setup_.bodies[b], settings.radius(), dimension, found);
