@@ -68,9 +68,13 @@ ContactLoad<double> load_of(const Law& law, const ContactKinematics<double>& k,
     return load;
 }
 
-/// Whether a grain's centre came through the surface in the last step: it is behind it, or nearer to it than
-/// it has moved away from it since, so that it was behind a sheet with two sides.
-bool has_passed(double distance, double moved_away) { return distance <= 0 || distance < moved_away; }
+/// Whether a grain's centre came through the surface in the last step: it is behind it, or no further from it
+/// than it may have come since it was behind a sheet with two sides. `departure` is its velocity away from
+/// the surface now, less than that of the passage by what the load, `acceleration`, took from it.
+bool has_passed(double distance, double departure, double acceleration, double time_step) {
+    const double speed = std::max(departure, 0.0) + acceleration * time_step;
+    return distance <= 0 || distance < speed * time_step;
+}
 
 }  // namespace
 
@@ -103,7 +107,8 @@ Overload WallContacts::evaluate(const Evaluation& evaluation, const AnyLawTable&
                 const bool force_fits = add_in_units(load.force, g.units_per_force, sum.force);
                 const bool torque_fits = add_in_units(torque, g.units_per_force / radius, sum.torque);
                 const double departure = dot(k.normal, g.grain.velocity - contact.wall_velocity);
-                const bool behind = has_passed(radius - contact.overlap, departure * evaluation.time_step);
+                const bool behind = has_passed(radius - contact.overlap, departure,
+                                               norm(load.force) / g.grain.mass, evaluation.time_step);
                 if ((behind || !force_fits || !torque_fits) && !overload.found)
                     overload = {true, near.grain, near.wall, behind};
             }

@@ -83,6 +83,18 @@ std::vector<std::string> GrainEvolution::preparations() const {
                         shrunk_.grains, shrunk_.id, shrunk_.least)};
 }
 
+std::vector<std::string> GrainEvolution::news() {
+    constexpr double most = 0.05;  // of the smaller radius: tests/stability/grain_contacts.cpp
+    std::vector<std::string> found = simulation_->take_notes();
+    if (told_of_overlap_ || greatest_overlap_ < most) return found;
+    told_of_overlap_ = true;
+    found.push_back(
+        fmt::format("time {:.4g} s: grains overlap by {:.2g} of the smaller radius; above {} contacts last "
+                    "longer and pack closer than those of hard grains: a greater stiffness?",
+                    time(), greatest_overlap_, most));
+    return found;
+}
+
 ReadCheckpoint GrainEvolution::read(const std::filesystem::path& what,
                                     const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
@@ -218,6 +230,7 @@ std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
 
 Diagnostics GrainEvolution::diagnostics() {
     const GrainTotals t = simulation_->totals();
+    greatest_overlap_ = std::max(greatest_overlap_, t.greatest_overlap);
     std::vector<double> row = {simulation_->time(),
                                t.mass,
                                t.kinetic_energy,

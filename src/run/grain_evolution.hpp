@@ -25,7 +25,7 @@ class GrainEvolution : public Evolution {
     void resume(const RunState& state) override;
     /// As many steps as it takes until the state is one to write and to go on from.
     void step() override;
-    std::vector<std::string> news() override { return simulation_->take_notes(); }
+    std::vector<std::string> news() override;
     double time() const override { return simulation_->time(); }
     double time_step() const override { return simulation_->time_step(); }
     std::uint64_t step_count() const override { return simulation_->step_count(); }
@@ -62,6 +62,8 @@ class GrainEvolution : public Evolution {
     std::optional<ParticleSet> read_contacts_, read_bonds_;  ///< of the checkpoint, until resume()
     Shrunk shrunk_;                                          ///< at the start
     double first_overlap_ = 0;                               ///< over the radius [1]
+    double greatest_overlap_ = 0;                            ///< of what diagnostics saw, likewise
+    bool told_of_overlap_ = false;
 };
 
 }  // namespace talus

@@ -48,8 +48,8 @@ double growth(const Communicator& comm, const WaterScene& scene, const Wave& wav
     ParticleSet& particles = run.access().particles;
     const double sound = scene.simulation.settings.state.sound_speed, slow = 1e-9 * sound;
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        const double phase = wave[0] * particles.data(field::position, 0)[i] +
-                             wave[1] * particles.data(field::position, 1)[i];
+        const double phase =
+            wave[0] * particles.data(field::position, 0)[i] + wave[1] * particles.data(field::position, 1)[i];
         for (std::size_t axis = 0; axis < 2; ++axis)
             particles.data(field::velocity, static_cast<int>(axis))[i] =
                 slow * direction[axis] * std::cos(phase + 1);
@@ -98,9 +98,11 @@ TEST(WaterTimeStep, SoundGrowsBeyondTheCourantNumberThatDiffusionBears) {
     };
     const Communicator alone(MPI_COMM_SELF);
     for (const double diffusion : {0.0, 0.02, 0.1}) {
-        const double wall = water::greatest_courant(scene_of(alone, keys(diffusion)).simulation.settings, 2, 2);
+        const double wall =
+            water::greatest_courant(scene_of(alone, keys(diffusion)).simulation.settings, 2, 2);
         for (const double share : shares)
-            points.push_back({diffusion, diffusion > 0 ? share * wall : 0.4 * share, diffusion > 0 ? wall : 0});
+            points.push_back(
+                {diffusion, diffusion > 0 ? share * wall : 0.4 * share, diffusion > 0 ? wall : 0});
     }
     const auto theory = [&](const Communicator& comm, const Point& point) {
         const water::Settings settings = scene_of(comm, keys(point.diffusion)).simulation.settings;
@@ -154,8 +156,8 @@ TEST(WaterTimeStep, FrictionBearsHalfOfWhatTheFirstMethodOfEulerDoes) {
         else
             EXPECT_NEAR(found[p], expected, 1e-3) << shares[p];
         if (is_root())
-            print({"viscosity of water", "square lattice", "nu dt/h2", shares[p] * wall, wall, "growth a step",
-                   found[p], shares[p] < 1});
+            print({"viscosity of water", "square lattice", "nu dt/h2", shares[p] * wall, wall,
+                   "growth a step", found[p], shares[p] < 1});
     }
 }
 
