@@ -76,8 +76,8 @@ TEST(Walls, AGrainComesThroughWhereItsSpringIsAsShortAsItsRadius) {
         else
             EXPECT_EQ(found[c], 0) << depth;
         if (is_root())
-            print({"grain through a wall", c % 2 == 1 ? "sheet" : "floor", "v sqrt(m/k)/r", depth, 1, "rebound",
-                   found[c], depth < 1});
+            print({"grain through a wall", c % 2 == 1 ? "sheet" : "floor", "v sqrt(m/k)/r", depth, 1,
+                   "rebound", found[c], depth < 1});
     }
 }
 
@@ -94,16 +94,19 @@ TEST(Contacts, RestitutionErrsWithTheTimeStepOverTheTimeOfContact) {
                   {},
                   {},
                   {}};
-    const double contact_time = dem::linear_collision_time(stiffness, mass / 2, law.elasticity.normal_damping);
+    const double contact_time =
+        dem::linear_collision_time(stiffness, mass / 2, law.elasticity.normal_damping);
     for (const double share : {0.01, 0.02, 0.05, 0.2, 0.5}) {
         // first touch anywhere within a step
         double worst = 0;
         constexpr int phases = 16;
         for (int phase = 0; phase < phases; ++phase) {
-            dem::TwoBalls<Law> pair{.law = law, .first = dem::make_ball(radius, density),
+            dem::TwoBalls<Law> pair{.law = law,
+                                    .first = dem::make_ball(radius, density),
                                     .second = dem::make_ball(radius, density)};
             const double dt = share * contact_time, speed = 1e-3;
-            pair.second.position = {2 * radius + speed * dt * (1 + static_cast<double>(phase) / phases), 0, 0};
+            pair.second.position = {2 * radius + speed * dt * (1 + static_cast<double>(phase) / phases), 0,
+                                    0};
             pair.first.velocity = {speed, 0, 0};
             const auto after = dem::collide(pair, dt).after;
             const double restitution = (after.second.velocity.x - after.first.velocity.x) / speed;
@@ -112,7 +115,8 @@ TEST(Contacts, RestitutionErrsWithTheTimeStepOverTheTimeOfContact) {
         const bool right = worst < 0.02;
         EXPECT_EQ(right, share <= 0.02) << share << ": " << worst;
         if (is_root())
-            print({"restitution", "two balls, 0.5", "dt/contact time", share, 0.02, "relative error", worst, right});
+            print({"restitution", "two balls, 0.5", "dt/contact time", share, 0.02, "relative error", worst,
+                   right});
     }
 }
 
@@ -130,8 +134,8 @@ double error_far_away(const Communicator& comm, double origin, double overlap) {
     return std::abs(apart / (overlap * std::sqrt(2 * stiffness / mass)) - 1);
 }
 
-/// Positions are in double precision: places round to 2^-53 of the distance from the origin, and an overlap of
-/// a thousandth of the radius is right to a thousandth up to 4.5e9 radii, where single precision ends at 8
+/// Positions are in double precision: places round to 2^-53 of the distance from the origin, and an overlap
+/// of a thousandth of the radius is right to a thousandth up to 4.5e9 radii, where single precision ends at 8
 /// radii. Beyond the force jumps from one rounding to the next.
 TEST(Places, RoundFarFromTheOrigin) {
     const double overlap = 1e-3 * radius, limit = 1e-3 * overlap / std::ldexp(1.0, -52);
@@ -143,8 +147,8 @@ TEST(Places, RoundFarFromTheOrigin) {
         const bool right = found[c] < 5e-3;
         EXPECT_EQ(right, shares[c] < 1) << shares[c] << ": " << found[c];
         if (is_root())
-            print({"far from the origin", "overlap of 1e-3 radii", "distance/radius", shares[c] * limit, limit,
-                   "error of the speed", found[c], right});
+            print({"far from the origin", "overlap of 1e-3 radii", "distance/radius", shares[c] * limit,
+                   limit, "error of the speed", found[c], right});
     }
 }
 
