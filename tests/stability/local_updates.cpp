@@ -39,8 +39,8 @@ void print_both(StabilityRow row, const std::string& plain, double plain_found, 
 /// Slip of a grain and of the fluid around it after one exchange by Stokes' drag, over that before.
 double slip_left(double rate_times_step, double mass_ratio) {
     constexpr double radius = 1e-4, viscosity = 1e-3, fluid_density = 1000, speed = 1e-6;
-    const double volume = 4.0 / 3 * std::numbers::pi * std::pow(radius, 3), fluid_mass = fluid_density * volume,
-                 mass = fluid_mass / mass_ratio,
+    const double volume = 4.0 / 3 * std::numbers::pi * std::pow(radius, 3),
+                 fluid_mass = fluid_density * volume, mass = fluid_mass / mass_ratio,
                  drag = 6 * std::numbers::pi * viscosity * radius,
                  step = rate_times_step / (drag * (1 / mass + 1 / fluid_mass));
     const coupling::Gathered around{.velocity = {},
@@ -57,12 +57,13 @@ double slip_left(double rate_times_step, double mass_ratio) {
     return 1 + force * step * (1 / mass + 1 / fluid_mass) / speed;
 }
 
-// Explicit drag leaves 1 - z of the slip, z = dt beta (1/m + 1/M): it grows beyond z = 2, dt = 2 t_s/(1 + m/M).
-// mean_force() leaves exp(-z).
+// Explicit drag leaves 1 - z of the slip, z = dt beta (1/m + 1/M): it grows beyond z = 2, dt = 2 t_s/(1 +
+// m/M). mean_force() leaves exp(-z).
 TEST(Drag, ExplicitStepsGrowBeyondTwoRelaxationTimes) {
     for (const double mass_ratio : {0.1, 10.0})
         for (const double share : shares) {
-            const double z = 2 * share, plain = std::pow(std::abs(1 - z), 20), found = slip_left(z, mass_ratio);
+            const double z = 2 * share, plain = std::pow(std::abs(1 - z), 20),
+                         found = slip_left(z, mass_ratio);
             EXPECT_EQ(plain < 1, share < 1);
             EXPECT_NEAR(found, std::exp(-z), 1e-12);
             const std::string masses = fmt::format(", fluid {} times as heavy", mass_ratio);
@@ -102,7 +103,8 @@ TEST(VirtualMass, AsAForceItGrowsForLightSpheres) {
 // mu g cos(theta) dt beyond the speed turns a flow round that friction should stop.
 TEST(BedFriction, ExplicitStepsTurnFlowsRound) {
     constexpr double friction = 0.5, gravity = 9.81, depth = 2, density = 2000, speed = 0.3;
-    const depth::Column column{.depth = depth, .density = density, .normal_stress = density * gravity * depth};
+    const depth::Column column{
+        .depth = depth, .density = density, .normal_stress = density * gravity * depth};
     for (const double share : shares) {
         const double step = share * speed / (friction * gravity),
                      plain = (speed - step * friction * gravity) / speed,
@@ -134,7 +136,8 @@ TEST(LargeShear, JaumannsRateTurnsTheStressRound) {
             stress = soil::hencky_stress(elastic, stress, f);
             ASSERT_TRUE(soil::relax(material, 1, 1.0 / steps, stress, history));
         }
-        const double plain = jaumann[2] / elastic.shear_modulus(), found = stress[3] / elastic.shear_modulus();
+        const double plain = jaumann[2] / elastic.shear_modulus(),
+                     found = stress[3] / elastic.shear_modulus();
         EXPECT_NEAR(plain, std::sin(shear), 1e-3);
         EXPECT_EQ(plain > 0, share < 1);
         EXPECT_NEAR(found, 4 * std::asinh(shear / 2) / std::sqrt(4 + shear * shear), 1e-9);
@@ -167,10 +170,10 @@ TEST(ColdTension, TheSquareOfTheSoundSpeedTurnsNegative) {
     }
 }
 
-// J. K. Salmon, M. S. Warren, J. Comput. Phys. 111 (1994) 136, section 5: all but a thousandth of the mass of a
-// cell in one corner, the rest in the opposite one, and a target just beyond that. With the cell's size over
-// the distance of its centre of mass as the criterion it is taken together for theta > 1/sqrt(3), whatever
-// error that makes. With the distance of what may be in it the cell is opened.
+// J. K. Salmon, M. S. Warren, J. Comput. Phys. 111 (1994) 136, section 5: all but a thousandth of the mass of
+// a cell in one corner, the rest in the opposite one, and a target just beyond that. With the cell's size
+// over the distance of its centre of mass as the criterion it is taken together for theta > 1/sqrt(3),
+// whatever error that makes. With the distance of what may be in it the cell is opened.
 TEST(GravityOpening, SizeOverDistanceTakesLopsidedCellsTogether) {
     constexpr double light = 1e-3, beyond = 1 + 1e-3, threshold = 1 / (std::numbers::sqrt3 * beyond);
     const auto pull = [](double mass, double distance) { return mass / (3 * distance * distance); };

@@ -41,9 +41,10 @@ std::map<std::pair<long, long>, double> pore_pressures(const SoilSimulation& sim
 }
 
 /// Pore pressures of the same stratum at rest by bilinear elements for displacement and pressure alike, with
-/// 2 x 2 points of Gauss and nothing against the checkerboard, `storage` [1/Pa] of the water: [K -B; -B' -M/Q] (u, p) = (f, 0).
+/// 2 x 2 points of Gauss and nothing against the checkerboard, `storage` [1/Pa] of the water: [K -B; -B'
+/// -M/Q] (u, p) = (f, 0).
 std::map<std::pair<long, long>, double> equal_order_pressures(long columns, long rows, double spacing,
-                                                               double storage) {
+                                                              double storage) {
     const double shear = 30e6 / (2 * 1.2), lame = 30e6 * 0.2 / (1.2 * 0.6);
     const auto node = [=](long x, long y) { return static_cast<int>(y * (columns + 1) + x); };
     const int nodes = node(columns, rows) + 1;
@@ -110,10 +111,10 @@ std::map<std::pair<long, long>, double> equal_order_pressures(long columns, long
     return pressure;
 }
 
-/// The load of saturated_stratum after 0.6 s, and at once. With interpolations of equal order for displacement
-/// and pressure a checkerboard is more than half of the pressure where the water is a thousandth as
-/// compressible as the soil, and gone where it is as compressible; the scheme of the program has 5 % at most,
-/// all of it the curvature of the pressure itself, in water that is hardly compressible.
+/// The load of saturated_stratum after 0.6 s, and at once. With interpolations of equal order for
+/// displacement and pressure a checkerboard is more than half of the pressure where the water is a thousandth
+/// as compressible as the soil, and gone where it is as compressible; the scheme of the program has 5 % at
+/// most, all of it the curvature of the pressure itself, in water that is hardly compressible.
 TEST(SoilStratum, ElementsOfEqualOrderMakeACheckerboardAndOursDoNot) {
     const Communicator alone(MPI_COMM_SELF);
     constexpr double spacing = 0.5, stiffness = 30e6 * 0.8 / (1.2 * 0.6);  // of the soil, in one direction

@@ -161,5 +161,58 @@ TEST(WaterTimeStep, FrictionBearsHalfOfWhatTheFirstMethodOfEulerDoes) {
     }
 }
 
+/// Twenty layers of water on a floor of some.
+constexpr const char* tank = R"(dimension = 2
+[box]
+boundaries = ["periodic", "open"]
+lower = [0, -20]
+upper = [12, 40]
+[water]
+density = 1
+greatest_speed = 6
+gravity = [0, -1]
+artificial_viscosity = 0.02
+[[body]]
+name = "water"
+shape = "box"
+lower = [0, 0]
+upper = [12, 20]
+lattice = "cubic"
+spacing = 1
+surface = 20
+[[body]]
+name = "floor"
+shape = "box"
+lower = [0, {}]
+upper = [12, 0]
+lattice = "cubic"
+wall = "free_slip"
+[run]
+end_time = 40
+)";
+
+/// A floor of one or two layers lets water through within 40 units of time, nine times sqrt(depth/g). Three
+/// hold it, and four, as thick as the kernel reaches and what `talus check` asks for, hold it at the same
+/// height.
+TEST(WaterWalls, ThinOnesLeak) {
+    const std::vector<double> layers{1, 2, 3, 4};
+    const auto found = on_shared_ranks(layers.size(), [&](const Communicator& comm, std::size_t k) {
+        const std::string text = fmt::format(fmt::runtime(tank), -layers[k]);
+        const WaterScene scene = read_water_scene(comm, Scene::parse(text, "tank.toml"));
+        WaterSimulation run(comm, scene.simulation, make_water(comm, scene));
+        run.start();
+        while (run.time() < scene.output.end_time && run.totals().least_place[1] > -1) run.step();
+        return run.totals().least_place[1];
+    });
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+        const bool holds = found[k] > 0;
+        EXPECT_EQ(holds, layers[k] > 2) << layers[k] << ": " << found[k];
+        if (is_root())
+            print({"wall of particles", "floor under 20 layers", "layers", layers[k], INFINITY,
+                   "lowest water (spacings)", found[k], holds});
+    }
+    EXPECT_NEAR(found[2], found[3], 0.01);
+}
+
 }  // namespace
 }  // namespace talus::test
