@@ -8,7 +8,8 @@ namespace talus::water {
 
 namespace {
 
-/// Of water: excess density over that of water at rest in even gravity, but for a constant, and volume.
+/// Of water: excess of the enthalpy over that of water at rest in even gravity, but for a constant, which is
+/// the excess of density over that at rest to first order; and volume.
 void prepare_water(ParticleSet& particles, const Settings& settings, double time) {
     const Tait& state = settings.state;
     const double rho0 = state.reference_density, c0 = state.sound_speed;
@@ -36,8 +37,8 @@ void prepare_water(ParticleSet& particles, const Settings& settings, double time
         pressure[i] = state.pressure(of_water);
         volume[i] = static_cast<float>(mass[i] / (ahead * size));
         scaled[i] = static_cast<float>(unit * pressure[i]);
-        excess[i] = static_cast<float>(of_water / rho0 - 1 - weight[0] * x[0][i] - weight[1] * x[1][i] -
-                                       weight[2] * x[2][i]);
+        excess[i] = static_cast<float>(state.enthalpy(of_water) - weight[0] * x[0][i] -
+                                       weight[1] * x[1][i] - weight[2] * x[2][i]);
     }
     for (int a = 0; a < dimension; ++a) {
         const double *v = particles.data(field::velocity, a), *rates = particles.data(field::acceleration, a);

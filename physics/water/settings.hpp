@@ -31,6 +31,12 @@ struct Tait {
                background_pressure / reference_density * (1 - 1 / s);
     }
 
+    /// Integral of dp/rho from rho0 on, over c0^2, nearly rho/rho0 - 1. At rest it falls by g/c0^2 each metre
+    /// that water is higher, exactly [1].
+    double enthalpy(double density) const {
+        return (power(density / reference_density, exponent - 1) - 1) / (exponent - 1);
+    }
+
   private:
     static double power(double base, int exponent) {
         double product = base;

@@ -94,7 +94,6 @@ class WallPass {
             velocity_[d][i] =
                 static_cast<float>(2 * own[d] / state.sound_speed - velocity[d].total() / total);
         partner_pressure_[i] = static_cast<float>(pressure_[i] / (state.reference_density * sound2));
-        volume_[i] /= at_rest + partner_pressure_[i];
     }
     /// p0/(rho0 c0^2).
     double background() const {

@@ -65,15 +65,17 @@ class StillWater(unittest.TestCase):
         self.assertLess(last["x"][:, 0].max(), 1)
 
     def test_drift(self):
-        """Over 100 turnover times sqrt(H/g) the centre of mass may move by no more than 0.5 % of the depth: that much is a layer
-        shortened by its weight whose lowest water is compressed by 1 %, as sound speeds of 10 times the flow's allow."""
+        """Over 100 turnover times sqrt(H/g), in twenty layers: pressure to 1.5 % of rho g H (1.27 % when written), the centre
+        of mass to 0.2 % of the depth (0.11 %): a coarse tank's share, fifty layers keep 0.5 %."""
         run = Run("still_tank", "body[0].spacing=0.025", "body[1].lower=[-0.1,-0.1]", "body[1].upper=[1.1,0]",
-                  "body[2].lower=[-0.1,0]", "body[3].upper=[1.1,0.6]", "run.end_time=22.6", "output.snapshots=0",
+                  "body[2].lower=[-0.1,0]", "body[3].upper=[1.1,0.6]", "run.end_time=22.6", "output.snapshots=22.6",
                   "output.diagnostics=0.5")
+        last = run.water(-1)
+        error = (last["p"] - 1000 * GRAVITY * (0.5 - last["x"][:, 1])) / (1000 * GRAVITY * 0.5)
+        self.assertLess(abs(error).max(), 0.015)
         height = run.history["potential_energy"] / (run.history["mass"] * GRAVITY)
-        self.assertLess(abs(height - height[0]).max(), 0.005 * 0.5)
-        self.assertLess(run.history["kinetic_energy"][-10:].max(), 1e-5 * run.history["mass"][0] * GRAVITY * 0.5)
-
+        self.assertLess(abs(height - height[0]).max(), 0.002 * 0.5)
+        self.assertLess(run.history["kinetic_energy"][-10:].max(), 1e-7 * run.history["mass"][0] * GRAVITY * 0.5)
 
     def test_background_pressure_pushes_nobody(self):
         """Water at rest on a lattice between plates, under a tenth of rho0 c0^2: sums over water and walls cancel, to the rounding
