@@ -37,8 +37,8 @@ void prepare_water(ParticleSet& particles, const Settings& settings, double time
         pressure[i] = state.pressure(of_water);
         volume[i] = static_cast<float>(mass[i] / (ahead * size));
         scaled[i] = static_cast<float>(unit * pressure[i]);
-        excess[i] = static_cast<float>(state.enthalpy(of_water) - weight[0] * x[0][i] -
-                                       weight[1] * x[1][i] - weight[2] * x[2][i]);
+        excess[i] = static_cast<float>(state.enthalpy(of_water) - weight[0] * x[0][i] - weight[1] * x[1][i] -
+                                       weight[2] * x[2][i]);
     }
     for (int a = 0; a < dimension; ++a) {
         const double *v = particles.data(field::velocity, a), *rates = particles.data(field::acceleration, a);
