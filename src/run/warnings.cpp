@@ -80,6 +80,12 @@ void warn_of_interpolation(const Setup& setup, std::vector<std::string>& found) 
     if (may_stretch && (dimension == 1 ? sph.stretched != sph::Interpolation::quintic
                                        : sph.stretched == sph::Interpolation::linear))
         warn("stretched", sph.stretched);
+    constexpr double narrow = 0.85;
+    if (may_stretch && dimension == 2 && sph.stretched == sph::Interpolation::cubic && sph.eta < narrow)
+        found.push_back(fmt::format(
+            "sph.eta = {}: below {} stretched matter clumps with the cubic interpolation in 2D; a wider "
+            "kernel does not",
+            sph.eta, narrow));
 }
 
 /// Where the wall lies for waves on lattices: tools/chart time_step, tests/stability/time_step.cpp.

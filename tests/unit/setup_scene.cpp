@@ -112,6 +112,13 @@ TEST_F(SceneFiles, ChoicesThatFailAreWarnedOf) {
     expect("formulation = \"standard\"\ncourant = 0.51\n", "sph.courant = 0.51");
     EXPECT_TRUE(warned("eta = 0.8\ncourant = 1.25\n").empty());
     expect("eta = 0.8\ncourant = 1.26\n", "blow up above 1.2");
+    const auto in_plane = [&](const std::string& sph) {
+        return warnings(read("dimension = 2\n" + body + sph));
+    };
+    EXPECT_TRUE(in_plane("eta = 0.9\n").empty());
+    ASSERT_EQ(in_plane("eta = 0.8\n").size(), 1u);
+    EXPECT_NE(in_plane("eta = 0.8\n")[0].find("clumps with the cubic interpolation in 2D"),
+              std::string::npos);
 }
 
 TEST_F(SceneFiles, SpinsAndTheirWarning) {
