@@ -13,6 +13,8 @@ inline constexpr Field<double> density_rate{
     "density_rate", "kg m-3 s-1", scalar, state, owner, "rate of the density at the last evaluation"};
 inline constexpr Field<double> shift_velocity{
     "shift_velocity", "m s-1", vector, state, owner, "that places move faster than the water"};
+inline constexpr Field<double> wall_force{"wall_force", "N",   vector,
+                                          work,         owner, "of the water on a particle of a wall"};
 inline constexpr Field<float> partner_velocity{"partner_velocity", "1", vector, work, halo,
                                                "velocity over c0"};
 inline constexpr Field<float> partner_volume{

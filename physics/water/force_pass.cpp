@@ -4,6 +4,7 @@
 #include "physics/sph/pass_support.hpp"
 #include "physics/sph/small_vectors.hpp"
 #include "physics/water/neighbourhood.hpp"
+#include "physics/water/pair_force.hpp"
 #include "physics/water/passes.hpp"
 
 namespace talus::water {
@@ -24,6 +25,7 @@ class ForcePass {
   public:
     ForcePass(ParticleSet& particles, const Settings& settings)
         : gravity_(settings.gravity),
+          pair_force_(settings),
           frame_(sph::components<D>(particles, field::position), settings.radius()),
           velocity_(sph::components<D>(particles, water_field::partner_velocity)),
           volume_(particles.data(water_field::partner_volume)),
@@ -34,9 +36,8 @@ class ForcePass {
           rate_(particles.data(water_field::density_rate)) {
         const double radius = settings.radius(), c0 = settings.state.sound_speed,
                      rho0 = settings.state.reference_density;
-        // grad W = -kernel x^3 r/R^(D+2) with x = 1 - r/R
-        const double kernel = 5 * sph::WendlandC2<D>::norm * std::pow(Settings::support(), D + 2);
-        force_scale_ = kernel * c0 * c0 / radius;
+        const double kernel = Force::kernel();
+        force_scale_ = Force::scale(settings);
         rate_scale_ = kernel * rho0 * c0 / radius;
         mass_scale_ = 1 / (rho0 * std::pow(radius, D));
         if constexpr (terms.shifts) {
@@ -48,8 +49,6 @@ class ForcePass {
             nearest_ = static_cast<float>(1 / (std::pow(away, 4) * (1 + 4 * spacing)));
             fastest_ = 0.5 * expected_speed;
         }
-        damping_ = static_cast<float>(settings.artificial_viscosity / Settings::support());
-        friction_ = static_cast<float>(2 * settings.viscosity / (rho0 * c0 * radius));
         diffusion_ = static_cast<float>(2 * settings.density_diffusion / Settings::support());
     }
 
@@ -64,6 +63,7 @@ class ForcePass {
     }
 
   private:
+    using Force = PairForce<D, Viscosities{terms.artificial, terms.viscous}>;
     static constexpr std::size_t at_velocity = D, at_volume = 2 * D, at_pressure = 2 * D + 1,
                                  at_density = 2 * D + 2, value_count = 2 * D + 3;
 
@@ -105,7 +105,6 @@ class ForcePass {
 
     template <bool of_wall>
     void add_up(const Own& own, const Block<value_count>& others, Sums& sums) const {
-        constexpr float softening = 0.01F / static_cast<float>(Settings::support() * Settings::support());
         const std::array<const float*, value_count> from = others.columns();
         for (std::size_t k = 0; k < others.size(); k += float_lane_count) {
             Vector<FloatLanes, D> r, v;
@@ -117,17 +116,9 @@ class ForcePass {
             const FloatLanes x = max(1 - distance, FloatLanes(0.0F)), x3 = x * x * x;
             const FloatLanes weight = load(from[at_volume] + k) * x3;
             const FloatLanes last = load(from[at_density] + k);  // of walls whether they do not slip
-            FloatLanes pressure = own.pressure + load(from[at_pressure] + k);
-            if constexpr (terms.artificial) {
-                const FloatLanes damping = of_wall ? damping_ * last : FloatLanes(damping_);
-                pressure -= damping * min(approach, FloatLanes(0.0F)) / (r2 + softening);
-            }
-            for (int d = 0; d < D; ++d) {
-                FloatLanes force = pressure * r[d];
-                if constexpr (terms.viscous)
-                    force -= (of_wall ? friction_ * last : FloatLanes(friction_)) * v[d];
-                sums.force[d].add(k, weight * force);
-            }
+            const Vector<FloatLanes, D> force = pair_force_(
+                r, v, r2, own.pressure + load(from[at_pressure] + k), of_wall ? last : FloatLanes(1.0F));
+            for (int d = 0; d < D; ++d) sums.force[d].add(k, weight * force[d]);
             FloatLanes rate = -own.density * approach;
             if constexpr (!of_wall) rate += diffusion_ * (last - own.excess);
             sums.rate.add(k, weight * rate);
@@ -171,6 +162,7 @@ class ForcePass {
     }
 
     const std::array<double, 3> gravity_;
+    const Force pair_force_;
     LocalFrame<D> frame_;
     std::array<const float*, D> velocity_;
     const float *volume_, *pressure_, *density_;
@@ -180,7 +172,7 @@ class ForcePass {
     std::array<double*, D> shift_{};
     double force_scale_, rate_scale_, mass_scale_, shift_scale_ = 0, fullness_ = 0, fastest_ = 0;
     float nearest_ = 0;
-    float damping_, friction_, diffusion_;
+    float diffusion_;
     Block<value_count> water_, wall_;
 };
 
