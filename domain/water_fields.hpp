@@ -33,4 +33,10 @@ inline constexpr Field<float> partner_density{
     work,
     halo,
     "of water: density less that of water at rest, over rho0; of walls: 1, or 0 if they slip"};
+inline constexpr Field<double> viscosity{
+    "viscosity", "Pa s", scalar, work, owner, "effective viscosity at the time of evaluation"};
+inline constexpr Field<float> partner_viscosity{"partner_viscosity",       "1", scalar, work, halo,
+                                                "viscosity over rho0 c0 R"};
+inline constexpr Field<float> partner_gradient{
+    "partner_gradient", "1", tensor, work, halo, "gradient of the velocity, dv_a/dx_b, over c0/R"};
 }  // namespace talus::water_field

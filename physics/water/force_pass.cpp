@@ -16,7 +16,8 @@ using sph::Vector;
 
 /// What a scene's water has besides pressure; what it has not costs nothing.
 struct Terms {
-    bool artificial, viscous, shifts;
+    Viscosities viscosities;
+    bool shifts;
 };
 
 /// In units of the radius of interaction R, the speed of sound c0 and the density at rest rho0.
@@ -49,6 +50,7 @@ class ForcePass {
             nearest_ = static_cast<float>(1 / (std::pow(away, 4) * (1 + 4 * spacing)));
             fastest_ = 0.5 * expected_speed;
         }
+        if constexpr (is_uneven) flow_ = LocalFlow<D>::columns(particles);
         diffusion_ = static_cast<float>(2 * settings.density_diffusion / Settings::support());
     }
 
@@ -63,9 +65,12 @@ class ForcePass {
     }
 
   private:
-    using Force = PairForce<D, Viscosities{terms.artificial, terms.viscous}>;
+    using Force = PairForce<D, terms.viscosities>;
     static constexpr std::size_t at_velocity = D, at_volume = 2 * D, at_pressure = 2 * D + 1,
-                                 at_density = 2 * D + 2, value_count = 2 * D + 3;
+                                 at_density = 2 * D + 2, at_flow = 2 * D + 3;
+    static constexpr bool is_uneven = terms.viscosities.laminar == Viscosity::uneven;
+    static constexpr std::size_t flow_count = is_uneven ? LocalFlow<D>::value_count : 0,
+                                 value_count = at_flow + flow_count;
 
     void gather(const CellEntry& cell, std::span<const Run> runs) {
         frame_.enter(cell);
@@ -84,6 +89,8 @@ class ForcePass {
                 values[at_volume] = abs(volume);
                 values[at_pressure] = load_first(pressure_ + k, number);
                 values[at_density] = load_first(density_ + k, number);
+                for (std::size_t c = 0; c < flow_count; ++c)
+                    values[at_flow + c] = load_first(flow_[c] + k, number);
                 const LaneBits is_wall = negative_lanes(volume);
                 if ((bits & ~is_wall) != 0) water_.append(bits & ~is_wall, values);
                 if ((bits & is_wall) != 0) wall_.append(bits & is_wall, values);
@@ -95,6 +102,7 @@ class ForcePass {
     struct Own {
         std::array<FloatLanes, D> x, v;
         FloatLanes pressure, density, excess;
+        LocalFlow<D> flow;  // where viscosity differs
     };
     struct Sums {
         std::array<FloatLaneSum, D> force;
@@ -116,8 +124,16 @@ class ForcePass {
             const FloatLanes x = max(1 - distance, FloatLanes(0.0F)), x3 = x * x * x;
             const FloatLanes weight = load(from[at_volume] + k) * x3;
             const FloatLanes last = load(from[at_density] + k);  // of walls whether they do not slip
-            const Vector<FloatLanes, D> force = pair_force_(
-                r, v, r2, own.pressure + load(from[at_pressure] + k), of_wall ? last : FloatLanes(1.0F));
+            const FloatLanes pressure = own.pressure + load(from[at_pressure] + k),
+                             sticks = of_wall ? last : FloatLanes(1.0F);
+            Vector<FloatLanes, D> force;
+            if constexpr (is_uneven && of_wall)
+                force = pair_force_(r, v, r2, pressure, sticks, own.flow);
+            else if constexpr (is_uneven)
+                force = pair_force_(r, v, r2, pressure, sticks,
+                                    between(own.flow, LocalFlow<D>::load(&from[at_flow], k)));
+            else
+                force = pair_force_(r, v, r2, pressure, sticks);
             for (int d = 0; d < D; ++d) sums.force[d].add(k, weight * force[d]);
             FloatLanes rate = -own.density * approach;
             if constexpr (!of_wall) rate += diffusion_ * (last - own.excess);
@@ -140,6 +156,7 @@ class ForcePass {
         }
         own.pressure = pressure_[i];
         own.excess = density_[i];
+        if constexpr (is_uneven) own.flow = LocalFlow<D>::of(flow_, i);
         const double density = mass_scale_ * mass_[i] / static_cast<double>(volume_[i]);
         own.density = static_cast<float>(density);
         Sums sums{};
@@ -166,6 +183,7 @@ class ForcePass {
     LocalFrame<D> frame_;
     std::array<const float*, D> velocity_;
     const float *volume_, *pressure_, *density_;
+    std::array<const float*, flow_count> flow_{};
     const double* mass_;
     std::array<double*, D> acceleration_;
     double* rate_;
@@ -180,23 +198,16 @@ class ForcePass {
 
 void force_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                 sph::PassCount& count) {
-    const bool artificial = settings.artificial_viscosity > 0, viscous = settings.viscosity > 0;
     const auto run = [&]<int D, Terms terms>() {
         sph::visit_cells(ForcePass<D, terms>(particles, settings), table, which, count);
     };
-    const bool shifts = settings.shifting > 0;
-    const auto with_shifting = [&]<int D, bool shifting>() {
-        if (artificial && viscous)
-            run.template operator()<D, Terms{true, true, shifting}>();
-        else if (artificial)
-            run.template operator()<D, Terms{true, false, shifting}>();
-        else if (viscous)
-            run.template operator()<D, Terms{false, true, shifting}>();
-        else
-            run.template operator()<D, Terms{false, false, shifting}>();
+    const auto with_shifting = [&]<int D, bool shifts>() {
+        with_viscosities(settings, [&]<Viscosities viscosities>() {
+            run.template operator()<D, Terms{viscosities, shifts}>();
+        });
     };
     const auto in_dimension = [&]<int D>() {
-        if (shifts)
+        if (settings.shifting > 0)
             with_shifting.template operator()<D, true>();
         else
             with_shifting.template operator()<D, false>();

@@ -27,7 +27,9 @@ class WallForces {
           sticks_(particles.data(water_field::partner_density)),
           force_(sph::components_to_write<D>(particles, water_field::wall_force)),
           scale_(PairForce<D, terms>::scale(settings) * settings.state.reference_density *
-                 std::pow(settings.radius(), D)) {}
+                 std::pow(settings.radius(), D)) {
+        if constexpr (is_uneven) flow_ = LocalFlow<D>::columns(particles);
+    }
 
     void visit(const CellEntry& cell, std::span<const Run> runs) {
         const auto asks = [this](std::uint32_t i) { return volume_[i] < 0 && feels_[body_[i]]; };
@@ -42,7 +44,10 @@ class WallForces {
 
   private:
     static constexpr std::size_t at_velocity = D, at_volume = 2 * D, at_pressure = 2 * D + 1,
-                                 value_count = 2 * D + 2;
+                                 at_flow = 2 * D + 2;
+    static constexpr bool is_uneven = terms.laminar == Viscosity::uneven;
+    static constexpr std::size_t flow_count = is_uneven ? LocalFlow<D>::value_count : 0,
+                                 value_count = at_flow + flow_count;
 
     void gather(const CellEntry& cell, std::span<const Run> runs) {
         frame_.enter(cell);
@@ -58,6 +63,8 @@ class WallForces {
                     values[d] = x[d];
                     values[at_velocity + d] = load_first(velocity_[d] + k, number);
                 }
+                for (std::size_t c = 0; c < flow_count; ++c)
+                    values[at_flow + c] = load_first(flow_[c] + k, number);
                 values[at_volume] = load_first(volume_ + k, number);
                 values[at_pressure] = load_first(pressure_ + k, number);
                 water_.append(bits, values);
@@ -76,8 +83,12 @@ class WallForces {
             }
             const FloatLanes r2 = sph::dot(r, r), x = max(1 - sqrt(r2), FloatLanes(0.0F));
             const FloatLanes weight = load(from[at_volume] + k) * (x * x * x);
-            const Vector<FloatLanes, D> force =
-                pair_force_(r, v, r2, pressure_[i] + load(from[at_pressure] + k), FloatLanes(sticks_[i]));
+            const FloatLanes pressure = pressure_[i] + load(from[at_pressure] + k), sticks = sticks_[i];
+            Vector<FloatLanes, D> force;
+            if constexpr (is_uneven)
+                force = pair_force_(r, v, r2, pressure, sticks, LocalFlow<D>::load(&from[at_flow], k));
+            else
+                force = pair_force_(r, v, r2, pressure, sticks);
             for (int d = 0; d < D; ++d) sum[d].add(k, weight * force[d]);
         }
         const double scale = -scale_ * static_cast<double>(volume_[i]);
@@ -90,6 +101,7 @@ class WallForces {
     LocalFrame<D> frame_;
     std::array<const float*, D> velocity_;
     const float *volume_, *pressure_, *sticks_;
+    std::array<const float*, flow_count> flow_{};
     std::array<double*, D> force_;
     const double scale_;
     Block<value_count> water_;
@@ -101,21 +113,12 @@ void find_wall_forces(ParticleSet& particles, const CellTable& table, const Sett
                       std::span<const std::uint8_t> feels) {
     const auto run = [&]<int D, Viscosities terms>() {
         WallForces<D, terms> pass(particles, settings, feels);
-        table.for_each_own(Cells::all,
-                           [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-                               pass.visit(cell, runs);
-                           });
+        table.for_each_own(Cells::all, [&pass](const CellEntry& cell, std::span<const Run> runs,
+                                               std::size_t) { pass.visit(cell, runs); });
     };
     const auto in_dimension = [&]<int D>() {
-        const bool artificial = settings.artificial_viscosity > 0, viscous = settings.viscosity > 0;
-        if (artificial && viscous)
-            run.template operator()<D, Viscosities{true, true}>();
-        else if (artificial)
-            run.template operator()<D, Viscosities{true, false}>();
-        else if (viscous)
-            run.template operator()<D, Viscosities{false, true}>();
-        else
-            run.template operator()<D, Viscosities{false, false}>();
+        with_viscosities(settings,
+                         [&]<Viscosities viscosities>() { run.template operator()<D, viscosities>(); });
     };
     if (particles.dimension() == 2)
         in_dimension.template operator()<2>();

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "domain/water_fields.hpp"
 #include "io/checkpoint.hpp"
 #include "physics/water/sound_waves.hpp"
 #include "src/run/options.hpp"
@@ -117,6 +118,7 @@ std::vector<SnapshotField> WaterEvolution::snapshot_fields() const {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::mass, &field::density, &field::pressure, &field::body})
         fields.push_back({.field = info});
+    if (setup_.simulation.settings.rheology) fields.push_back({.field = &water_field::viscosity});
     return fields;
 }
 

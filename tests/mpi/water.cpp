@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <string>
@@ -76,6 +77,14 @@ end_time = 1
 rebalance_interval = 2
 )";
 
+/// The first as mud.
+const std::string mud = [] {
+    std::string text = plane;
+    const std::string viscosity = "viscosity = 0.5\n";
+    text.replace(text.find(viscosity), viscosity.size(), "");
+    return text + "[water.rheology]\nyield_stress = 200\nconsistency = 5\nexponent = 0.6\n";
+}();
+
 constexpr int steps = 20, stop = 7;
 
 WaterScene scene_of(const Communicator& comm, const char* text, PartitionMethod method) {
@@ -124,8 +133,11 @@ TEST_P(WaterSameBits, AfterInterruption) {
     EXPECT_TRUE(gather_state(world, second.particles()) == run(alone, GetParam(), PartitionMethod::slabs));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space),
-                         [](const auto& scene) { return scene.index == 0 ? "plane" : "space"; });
+INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space, mud.c_str()),
+                         [](const auto& scene) {
+                             constexpr std::array names{"plane", "space", "mud"};
+                             return names[scene.index];
+                         });
 
 /// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that
 /// has it.

@@ -129,6 +129,56 @@ class Viscous(unittest.TestCase):
             self.assertLess(abs(np.hypot(now["v"][:, 0], now["v"][:, 1]) - exact).mean(), 0.01 * decay)
 
 
+class Mud(unittest.TestCase):
+    """Between plates a metre apart, which drag with force/2 per area. The stress grows linearly from the middle and is min(mu_max
+    rate, tau_y + K rate^n): the rate follows in closed form, the profile is its integral."""
+    GREATEST = 2000
+
+    def channel(self, spacing, force, flow, end):
+        length = 6 * spacing
+        return Run("bingham_channel", f"box.upper=[{length},1]", f"body[0].upper=[{length},1]", f"body[1].upper=[{length},0]",
+                   f"body[2].upper=[{length},1.2]", f"body[0].spacing={spacing}", f"water.rheology.greatest_viscosity={self.GREATEST}",
+                   f"water.gravity=[{force / 1000},0]", f"run.end_time={end}", f"output.snapshots={end}", "output.diagnostics=1",
+                   *[f"water.rheology.{key}={value}" for key, value in flow.items()])
+
+    def profile(self, spacing, force, consistency, yield_stress, exponent, end=6):
+        """Speed in the middle over the exact one, and rms error over that."""
+        last = self.channel(spacing, force, {"yield_stress": yield_stress, "consistency": consistency, "exponent": exponent},
+                            end).water(-1)
+        s = np.linspace(0, 0.5, 2001)
+        rate = np.maximum(force * s / self.GREATEST, (np.maximum(force * s - yield_stress, 0) / consistency)**(1 / exponent))
+        fallen = np.concatenate([[0], np.cumsum((rate[1:] + rate[:-1]) / 2 * (s[1] - s[0]))])
+        exact = fallen[-1] - np.interp(abs(last["x"][:, 1] - 0.5), s, fallen)
+        u = last["v"][:, 0]
+        return u.max() / fallen[-1], math.sqrt(((u - exact)**2).mean()) / fallen[-1]
+
+    def test_bingham(self):
+        """20 particles across, of which ten are in the plug: its speed to 2 %, the profile to 5 % of it in the mean, for the five
+        rows that are sheared are smeared over one."""
+        middle, error = self.profile(0.05, 800, 100, 200, 1)
+        self.assertAlmostEqual(middle, 1, delta=0.02)
+        self.assertLess(error, 0.05)
+
+    def test_power_law(self):
+        """n = 0.5 without a yield stress, 20 across: 3 %."""
+        middle, error = self.profile(0.05, 400, 150, 0, 0.5, 8)
+        self.assertAlmostEqual(middle, 1, delta=0.03)
+        self.assertLess(error, 0.03)
+
+    def test_herschel_bulkley(self):
+        """n = 0.5 with a yield stress: 7 % with 20 across, 2 % with 40: an order of 1.5 at least."""
+        errors = [self.profile(spacing, 800, 200, 100, 0.5)[1] for spacing in (0.05, 0.025)]
+        self.assertLess(errors[0], 0.07)
+        self.assertLess(errors[1], 0.02)
+        self.assertGreater(errors[0] / errors[1], 2**1.5)
+
+    def test_creep(self):
+        """Below the yield stress everywhere it creeps as a fluid of the greatest viscosity, steadily, to 1 %."""
+        run = self.channel(0.05, 300, {"yield_stress": 200, "consistency": 100}, 3)
+        creep = 300 * 0.5**2 / (2 * self.GREATEST)
+        self.assertLess(abs(run.history["greatest_speed"][1:] / creep - 1).max(), 0.01)
+
+
 class FreeSurface(unittest.TestCase):
     def test_standing_wave(self):
         """Period of the linear theory, omega^2 = g k tanh k d, to 2 %: 1 % is the resolution of the history over three halves of
