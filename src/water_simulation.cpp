@@ -36,6 +36,7 @@ void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup
              &water_field::density_rate, &field::pressure, &water_field::partner_velocity,
              &water_field::partner_volume, &water_field::partner_pressure, &water_field::partner_density})
         particles.add(*info);
+    if (!setup.records_force.empty()) particles.add(water_field::wall_force);
     if (setup.settings.rheology) {
         particles.add(water_field::viscosity);
         particles.add(water_field::partner_viscosity);

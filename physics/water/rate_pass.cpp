@@ -91,7 +91,8 @@ class RatePass {
             for (int c = 0; c < D; ++c) {
                 const double moment = moment_scale_ * moments_of_velocity[D * a + c].total();
                 for (int b = 0; b < D; ++b)
-                    gradient[D * a + b] += moment * inverse[sph::symmetric_index<D>(std::min(b, c), std::max(b, c))];
+                    gradient[D * a + b] +=
+                        moment * inverse[sph::symmetric_index<D>(std::min(b, c), std::max(b, c))];
             }
         double twice_squared = 0;  // 2 D : D
         for (int a = 0; a < D; ++a)

@@ -93,6 +93,9 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
                         "is not of a body: water.density is that of all water, `surface` gives its weight");
         water.bodies.push_back(body);
         setup.walls.push_back(read_body_wall(table, box.dimension, false));
+        setup.records_force.push_back(table.flag("record_force", false));
+        if (setup.records_force.back() && !setup.walls.back())
+            table.error("record_force", "is of walls; allowed with wall = \"no_slip\" and \"free_slip\"");
         water.surface.emplace_back();
         if (!setup.walls.back() && table.has("surface")) water.surface.back() = table.number("surface", "m");
     }
@@ -120,6 +123,22 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
     if (std::none_of(setup.walls.begin(), setup.walls.end(),
                      [](const auto& wall) { return wall.has_value(); }))
         setup.walls.clear();
+    if (std::ranges::none_of(setup.records_force, [](std::uint8_t records) { return records != 0; }))
+        setup.records_force.clear();
+}
+
+std::vector<WaterGauge> read_gauges(const Section& root, const Box& box) {
+    std::vector<WaterGauge> gauges;
+    for (const Section& table : root.sections("gauge")) {
+        const WaterGauge gauge{table.text("name"), read_point(table, "place", "m", box.dimension)};
+        refuse_same_name(table, gauges, gauge.name);
+        for (std::size_t a = 0; a < static_cast<std::size_t>(box.dimension); ++a)
+            if (box.boundary[a] != Boundary::open &&
+                (gauge.place[a] < box.lower[a] || gauge.place[a] > box.upper[a]))
+                table.error("place", fmt::format("is outside the box along {}", "xyz"[a]));
+        gauges.push_back(gauge);
+    }
+    return gauges;
 }
 
 }  // namespace
@@ -147,11 +166,18 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     setup.settings.smoothing_length = smoothing * water.spacing;
     setup.settings.radius_in_spacings = water::Settings::support() * smoothing;
     if (!scene.faulty()) read_rheology(table.section("rheology"), setup.settings);
+    water.gauges = read_gauges(root, setup.box);
     water.output = read_output(root);
     const Section run = root.section("run");
     setup.partition = read_partition(run);
     setup.rebalance_interval = read_rebalance_interval(run);
     return water;
+}
+
+std::vector<std::string> WaterScene::body_names() const {
+    std::vector<std::string> names;
+    for (const Body& body : bodies) names.push_back(body.name);
+    return names;
 }
 
 ParticleSet empty_water(const WaterSetup& setup) {

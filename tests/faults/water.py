@@ -49,6 +49,11 @@ class Water(Case):
             self.check("artificial_viscosity = 0.02\n", mud + keys + "\n", pattern)
         self.check("artificial_viscosity = 0.02\n", "viscosity = 1\n" + mud + "consistency = 1\n", r"water\.viscosity = .*water\.rheology")
 
+    def test_what_is_recorded(self):
+        self.check("surface = 0.2\n", "surface = 0.2\nrecord_force = true\n", r"scene\.toml:14: body\[0\]\.record_force .*of walls")
+        self.check("[run]", '[[gauge]]\nname = "a"\nplace = [0, 0]\n[[gauge]]\nname = "a"\nplace = [0, 0]\n[run]',
+                   r"gauge\[1\]\.name = .*another of the name 'a'")
+
     def test_an_unknown_key(self):
         self.check("artificial_viscosity", "artificial_viscocity", r"artificial_viscocity")
 

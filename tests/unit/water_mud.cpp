@@ -1,6 +1,5 @@
-#include <gtest/gtest.h>
-
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -51,10 +50,10 @@ end_time = 1
 class TurningMud : public testing::TestWithParam<int> {
   protected:
     TurningMud()
-        : scene_(read_water_scene(
-              world_, Scene::parse(fmt::format(fmt::runtime(turning), GetParam(),
-                                               GetParam() == 2 ? "2.0" : "[1.0, -0.5, 2.0]"),
-                                   "turning.toml"))),
+        : scene_(
+              read_water_scene(world_, Scene::parse(fmt::format(fmt::runtime(turning), GetParam(),
+                                                                GetParam() == 2 ? "2.0" : "[1.0, -0.5, 2.0]"),
+                                                    "turning.toml"))),
           run_(world_, scene_.simulation, make_water(world_, scene_)) {
         run_.start();
     }
@@ -67,7 +66,8 @@ class TurningMud : public testing::TestWithParam<int> {
                 0.01F * static_cast<float>(1 + particles.data(field::id)[i] % 7);
         sph::PassCount count;
         count.work_of_cell.assign(run_.decomposition().own_cells().size(), 0.0);
-        water::force_pass(particles, run_.decomposition().table(), Cells::all, scene_.simulation.settings, count);
+        water::force_pass(particles, run_.decomposition().table(), Cells::all, scene_.simulation.settings,
+                          count);
         double greatest = 0;
         for (int a = 0; a < particles.dimension(); ++a)
             for (const double value : particles.own(field::acceleration, a))
