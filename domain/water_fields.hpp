@@ -13,6 +13,8 @@ inline constexpr Field<double> density_rate{
     "density_rate", "kg m-3 s-1", scalar, state, owner, "rate of the density at the last evaluation"};
 inline constexpr Field<double> shift_velocity{
     "shift_velocity", "m s-1", vector, state, owner, "that places move faster than the water"};
+inline constexpr Field<double> wall_force{"wall_force", "N",   vector,
+                                          work,         owner, "of the water on a particle of a wall"};
 inline constexpr Field<float> partner_velocity{"partner_velocity", "1", vector, work, halo,
                                                "velocity over c0"};
 inline constexpr Field<float> partner_volume{
@@ -31,4 +33,10 @@ inline constexpr Field<float> partner_density{
     work,
     halo,
     "of water: density less that of water at rest, over rho0; of walls: 1, or 0 if they slip"};
+inline constexpr Field<double> viscosity{
+    "viscosity", "Pa s", scalar, work, owner, "effective viscosity at the time of evaluation"};
+inline constexpr Field<float> partner_viscosity{"partner_viscosity",       "1", scalar, work, halo,
+                                                "viscosity over rho0 c0 R"};
+inline constexpr Field<float> partner_gradient{
+    "partner_gradient", "1", tensor, work, halo, "gradient of the velocity, dv_a/dx_b, over c0/R"};
 }  // namespace talus::water_field

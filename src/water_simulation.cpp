@@ -36,6 +36,12 @@ void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup
              &water_field::density_rate, &field::pressure, &water_field::partner_velocity,
              &water_field::partner_volume, &water_field::partner_pressure, &water_field::partner_density})
         particles.add(*info);
+    if (!setup.records_force.empty()) particles.add(water_field::wall_force);
+    if (setup.settings.rheology) {
+        particles.add(water_field::viscosity);
+        particles.add(water_field::partner_viscosity);
+        particles.add(water_field::partner_gradient);
+    }
     if (setup.settings.shifting > 0) particles.add(water_field::shift_velocity);
 }
 
@@ -112,8 +118,17 @@ void WaterSimulation::evaluate(double time_ahead, double time) {
     }
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);
-    overlapped(phases_, Phase::forces, halo, particles_, partners,
-               [&](Cells cells) { water::force_pass(particles_, table, cells, settings, pass_count_); });
+    const auto forces = [&](Cells cells) {
+        water::force_pass(particles_, table, cells, settings, pass_count_);
+    };
+    if (settings.rheology) {  // which sees the walls' copies, too, before forces see what viscosity follows
+        overlapped(phases_, Phase::gradients, halo, particles_, partners,
+                   [&](Cells cells) { water::rate_pass(particles_, table, cells, settings); });
+        overlapped(phases_, Phase::forces, halo, particles_,
+                   {&water_field::partner_viscosity, &water_field::partner_gradient}, forces);
+    } else {
+        overlapped(phases_, Phase::forces, halo, particles_, partners, forces);
+    }
     const std::span<const CellEntry> cells = decomposition_.own_cells();
     for (std::size_t k = 0; k < cells.size(); ++k)
         pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);

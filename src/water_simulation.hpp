@@ -27,6 +27,7 @@ struct WaterSetup {
     Box box;
     water::Settings settings;
     std::vector<std::optional<sph::Wall>> walls;  ///< one a body: it is a wall; empty: none is
+    std::vector<std::uint8_t> records_force{};    ///< one a body, not 0: its force is; empty: of none
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance
     bool holds_grains = false;    ///< that act on the water: CoupledSimulation

@@ -4,6 +4,7 @@
 #include "physics/sph/pass_support.hpp"
 #include "physics/sph/small_vectors.hpp"
 #include "physics/water/neighbourhood.hpp"
+#include "physics/water/pair_force.hpp"
 #include "physics/water/passes.hpp"
 
 namespace talus::water {
@@ -15,7 +16,8 @@ using sph::Vector;
 
 /// What a scene's water has besides pressure; what it has not costs nothing.
 struct Terms {
-    bool artificial, viscous, shifts;
+    Viscosities viscosities;
+    bool shifts;
 };
 
 /// In units of the radius of interaction R, the speed of sound c0 and the density at rest rho0.
@@ -24,6 +26,7 @@ class ForcePass {
   public:
     ForcePass(ParticleSet& particles, const Settings& settings)
         : gravity_(settings.gravity),
+          pair_force_(settings),
           frame_(sph::components<D>(particles, field::position), settings.radius()),
           velocity_(sph::components<D>(particles, water_field::partner_velocity)),
           volume_(particles.data(water_field::partner_volume)),
@@ -34,9 +37,8 @@ class ForcePass {
           rate_(particles.data(water_field::density_rate)) {
         const double radius = settings.radius(), c0 = settings.state.sound_speed,
                      rho0 = settings.state.reference_density;
-        // grad W = -kernel x^3 r/R^(D+2) with x = 1 - r/R
-        const double kernel = 5 * sph::WendlandC2<D>::norm * std::pow(Settings::support(), D + 2);
-        force_scale_ = kernel * c0 * c0 / radius;
+        const double kernel = Force::kernel();
+        force_scale_ = Force::scale(settings);
         rate_scale_ = kernel * rho0 * c0 / radius;
         mass_scale_ = 1 / (rho0 * std::pow(radius, D));
         if constexpr (terms.shifts) {
@@ -48,8 +50,7 @@ class ForcePass {
             nearest_ = static_cast<float>(1 / (std::pow(away, 4) * (1 + 4 * spacing)));
             fastest_ = 0.5 * expected_speed;
         }
-        damping_ = static_cast<float>(settings.artificial_viscosity / Settings::support());
-        friction_ = static_cast<float>(2 * settings.viscosity / (rho0 * c0 * radius));
+        if constexpr (is_uneven) flow_ = LocalFlow<D>::columns(particles);
         diffusion_ = static_cast<float>(2 * settings.density_diffusion / Settings::support());
     }
 
@@ -64,8 +65,12 @@ class ForcePass {
     }
 
   private:
+    using Force = PairForce<D, terms.viscosities>;
     static constexpr std::size_t at_velocity = D, at_volume = 2 * D, at_pressure = 2 * D + 1,
-                                 at_density = 2 * D + 2, value_count = 2 * D + 3;
+                                 at_density = 2 * D + 2, at_flow = 2 * D + 3;
+    static constexpr bool is_uneven = terms.viscosities.laminar == Viscosity::uneven;
+    static constexpr std::size_t flow_count = is_uneven ? LocalFlow<D>::value_count : 0,
+                                 value_count = at_flow + flow_count;
 
     void gather(const CellEntry& cell, std::span<const Run> runs) {
         frame_.enter(cell);
@@ -84,6 +89,8 @@ class ForcePass {
                 values[at_volume] = abs(volume);
                 values[at_pressure] = load_first(pressure_ + k, number);
                 values[at_density] = load_first(density_ + k, number);
+                for (std::size_t c = 0; c < flow_count; ++c)
+                    values[at_flow + c] = load_first(flow_[c] + k, number);
                 const LaneBits is_wall = negative_lanes(volume);
                 if ((bits & ~is_wall) != 0) water_.append(bits & ~is_wall, values);
                 if ((bits & is_wall) != 0) wall_.append(bits & is_wall, values);
@@ -95,6 +102,7 @@ class ForcePass {
     struct Own {
         std::array<FloatLanes, D> x, v;
         FloatLanes pressure, density, excess;
+        LocalFlow<D> flow;  // where viscosity differs
     };
     struct Sums {
         std::array<FloatLaneSum, D> force;
@@ -105,7 +113,6 @@ class ForcePass {
 
     template <bool of_wall>
     void add_up(const Own& own, const Block<value_count>& others, Sums& sums) const {
-        constexpr float softening = 0.01F / static_cast<float>(Settings::support() * Settings::support());
         const std::array<const float*, value_count> from = others.columns();
         for (std::size_t k = 0; k < others.size(); k += float_lane_count) {
             Vector<FloatLanes, D> r, v;
@@ -117,17 +124,17 @@ class ForcePass {
             const FloatLanes x = max(1 - distance, FloatLanes(0.0F)), x3 = x * x * x;
             const FloatLanes weight = load(from[at_volume] + k) * x3;
             const FloatLanes last = load(from[at_density] + k);  // of walls whether they do not slip
-            FloatLanes pressure = own.pressure + load(from[at_pressure] + k);
-            if constexpr (terms.artificial) {
-                const FloatLanes damping = of_wall ? damping_ * last : FloatLanes(damping_);
-                pressure -= damping * min(approach, FloatLanes(0.0F)) / (r2 + softening);
-            }
-            for (int d = 0; d < D; ++d) {
-                FloatLanes force = pressure * r[d];
-                if constexpr (terms.viscous)
-                    force -= (of_wall ? friction_ * last : FloatLanes(friction_)) * v[d];
-                sums.force[d].add(k, weight * force);
-            }
+            const FloatLanes pressure = own.pressure + load(from[at_pressure] + k),
+                             sticks = of_wall ? last : FloatLanes(1.0F);
+            Vector<FloatLanes, D> force;
+            if constexpr (is_uneven && of_wall)
+                force = pair_force_(r, v, r2, pressure, sticks, own.flow);
+            else if constexpr (is_uneven)
+                force = pair_force_(r, v, r2, pressure, sticks,
+                                    between(own.flow, LocalFlow<D>::load(&from[at_flow], k)));
+            else
+                force = pair_force_(r, v, r2, pressure, sticks);
+            for (int d = 0; d < D; ++d) sums.force[d].add(k, weight * force[d]);
             FloatLanes rate = -own.density * approach;
             if constexpr (!of_wall) rate += diffusion_ * (last - own.excess);
             sums.rate.add(k, weight * rate);
@@ -149,6 +156,7 @@ class ForcePass {
         }
         own.pressure = pressure_[i];
         own.excess = density_[i];
+        if constexpr (is_uneven) own.flow = LocalFlow<D>::of(flow_, i);
         const double density = mass_scale_ * mass_[i] / static_cast<double>(volume_[i]);
         own.density = static_cast<float>(density);
         Sums sums{};
@@ -171,16 +179,18 @@ class ForcePass {
     }
 
     const std::array<double, 3> gravity_;
+    const Force pair_force_;
     LocalFrame<D> frame_;
     std::array<const float*, D> velocity_;
     const float *volume_, *pressure_, *density_;
+    std::array<const float*, flow_count> flow_{};
     const double* mass_;
     std::array<double*, D> acceleration_;
     double* rate_;
     std::array<double*, D> shift_{};
     double force_scale_, rate_scale_, mass_scale_, shift_scale_ = 0, fullness_ = 0, fastest_ = 0;
     float nearest_ = 0;
-    float damping_, friction_, diffusion_;
+    float diffusion_;
     Block<value_count> water_, wall_;
 };
 
@@ -188,23 +198,16 @@ class ForcePass {
 
 void force_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                 sph::PassCount& count) {
-    const bool artificial = settings.artificial_viscosity > 0, viscous = settings.viscosity > 0;
     const auto run = [&]<int D, Terms terms>() {
         sph::visit_cells(ForcePass<D, terms>(particles, settings), table, which, count);
     };
-    const bool shifts = settings.shifting > 0;
-    const auto with_shifting = [&]<int D, bool shifting>() {
-        if (artificial && viscous)
-            run.template operator()<D, Terms{true, true, shifting}>();
-        else if (artificial)
-            run.template operator()<D, Terms{true, false, shifting}>();
-        else if (viscous)
-            run.template operator()<D, Terms{false, true, shifting}>();
-        else
-            run.template operator()<D, Terms{false, false, shifting}>();
+    const auto with_shifting = [&]<int D, bool shifts>() {
+        with_viscosities(settings, [&]<Viscosities viscosities>() {
+            run.template operator()<D, Terms{viscosities, shifts}>();
+        });
     };
     const auto in_dimension = [&]<int D>() {
-        if (shifts)
+        if (settings.shifting > 0)
             with_shifting.template operator()<D, true>();
         else
             with_shifting.template operator()<D, false>();

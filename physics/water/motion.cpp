@@ -49,7 +49,7 @@ void shift(ParticleSet& particles, double time) {
 sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& settings) {
     const double infinity = std::numeric_limits<double>::infinity();
     if (particles.size() == 0) return {infinity, 0, "no particles"};
-    constexpr double viscous_share = 0.125, accelerated_share = 0.25;
+    constexpr double accelerated_share = 0.25;
     const double h = settings.smoothing_length;
     const double *density = particles.data(field::density), *rate = particles.data(water_field::density_rate);
     const int dimension = particles.dimension();
@@ -78,9 +78,7 @@ sph::StepLimit stable_time_step(const ParticleSet& particles, const Settings& se
                  accelerated = acceleration2.value > 0
                                    ? accelerated_share * std::sqrt(h / std::sqrt(acceleration2.value))
                                    : infinity,
-                 viscous = settings.viscosity > 0 ? viscous_share * h * h * settings.state.reference_density *
-                                                        least_share / settings.viscosity
-                                                  : infinity;
+                 viscous = least_share * settings.viscous_time_step();
     if (viscous < sound && viscous < accelerated) return {viscous, id[speed.at], "viscosity"};
     if (sound < accelerated) return {sound, id[speed.at], "sound"};
     return {accelerated, id[acceleration2.at], "acceleration"};

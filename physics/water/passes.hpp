@@ -22,6 +22,13 @@ void prepare_partners(ParticleSet& particles, const Settings& settings, std::spa
 void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                std::span<const sph::WallNow> walls);
 
+/// Viscosity of the own water from the rate of strain, whose gradient of the velocity is corrected to be
+/// exact for linear fields (J. Bonet, T.-S. L. Lok, Comput. Methods Appl. Mech. Eng. 180 (1999) 97). Walls
+/// that slip have no part in it. Needs `settings.rheology`; reads position, partner_velocity, partner_volume
+/// and partner_density of partners, writes viscosity, partner_viscosity and
+/// partner_gradient.
+void rate_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
+
 /// Acceleration, gravity included, and density_rate of the water:
 ///
 ///     dv_i/dt = -(1/rho_i) sum_j V_j (p_i + p_j + P_ij) grad W_ij + (1/rho_i) sum_j V_j 2 mu F_ij v_ij + g
@@ -34,7 +41,11 @@ void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, cons
 /// 12-14), between water alone. With shifting also
 /// shift_velocity, -4 h U sum_j V_j (1 + 0.2 (W_ij/W(spacing))^4) grad W_ij, U = c0/10, at most U/2, and none
 /// near a free surface: P. N. Sun et al., Comput. Methods Appl. Mech. Eng. 315 (2017) 25, eq. 23. Walls that
-/// slip have no viscosity. Reads position and partner_* of partners.
+/// slip have no viscosity. With `settings.rheology` the second
+/// sum is of 2 mu_ij F_ij (v_ij + (G_i + G_j)^T r_ij/2), mu_ij the harmonic mean (P. W. Cleary, J. J.
+/// Monaghan, J. Comput. Phys. 148 (1999) 227) and G that of rate_pass(): the stress of a viscosity that
+/// differs from place to place, mu (grad v + grad v^T), none in a rigid turn; walls have viscosity and G of
+/// the water. Reads position and partner_* of partners.
 void force_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                 sph::PassCount& count);
 

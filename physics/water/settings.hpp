@@ -2,6 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
+
+#include "physics/water/rheology.hpp"
 
 namespace talus::water {
 
@@ -51,12 +55,13 @@ inline double share_of_water(double solid_fraction) { return 1 - std::min(solid_
 /// What a scene says of its water, resolved.
 struct Settings {
     Tait state;
-    double smoothing_length = 0;      ///< h; the kernel, Wendland's C2, ends at 2 h [m]
-    double viscosity = 0;             ///< [Pa s]
-    double artificial_viscosity = 0;  ///< alpha [1]
-    double density_diffusion = 0.1;   ///< delta [1]
-    double shifting = 0;              ///< of particles towards even places, see force_pass() [1]
-    std::array<double, 3> gravity{};  ///< [m/s2]
+    double smoothing_length = 0;         ///< h; the kernel, Wendland's C2, ends at 2 h [m]
+    double viscosity = 0;                ///< the same everywhere [Pa s]
+    std::optional<Rheology> rheology{};  ///< instead
+    double artificial_viscosity = 0;     ///< alpha [1]
+    double density_diffusion = 0.1;      ///< delta [1]
+    double shifting = 0;                 ///< of particles towards even places, see force_pass() [1]
+    std::array<double, 3> gravity{};     ///< [m/s2]
     /// Gravity along axes that have an end, whose weight pressure bears at rest [m/s2].
     std::array<double, 3> bearing{};
     double courant = 0.4;
@@ -64,6 +69,13 @@ struct Settings {
     double radius_in_spacings = 0;  ///< radius of interaction over the spacing of the particles [1]
 
     static constexpr double support() { return 2; }  ///< of the kernel [h]
+    /// Longest step by viscosity, 7/8 of what is stable where velocities alternate between particles:
+    /// friction damps those at a rate of 7 mu/(rho h^2) [s].
+    double viscous_time_step() const {
+        const double greatest = rheology ? rheology->greatest_viscosity : viscosity;
+        return greatest > 0 ? 0.125 * smoothing_length * smoothing_length * state.reference_density / greatest
+                            : std::numeric_limits<double>::infinity();
+    }
     double radius() const { return support() * smoothing_length; }
 };
 

@@ -14,7 +14,20 @@ namespace {
 dem::Vector3<> vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 std::array<double, 3> array_of(const dem::Vector3<>& v) { return {v.x, v.y, v.z}; }
 
+/// Water in a half space as a particle of the wall sees it, `distance` from the mean place of what it sees,
+/// both in units of the radius of interaction: how many times deeper in the wall it is than that is in the
+/// water. The mean distance grows from `at_surface` to 1 with the depth, nearly in a straight line; water is
+/// no nearer to the wall than half a spacing.
 template <int D>
+double depth_ratio(double distance, double spacing) {
+    constexpr double at_surface = D == 2 ? 0.2122 : 0.2083;
+    const double depth = std::min((distance - at_surface) / (1 - at_surface), distance - spacing / 2);
+    return depth > 0 ? depth / (distance - depth) : 0;
+}
+
+/// `linearly`: walls that do not slip have the velocity that water with an even rate of shear would have
+/// there, else that of the water in front.
+template <int D, bool linearly>
 class WallPass {
   public:
     WallPass(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls)
@@ -69,19 +82,24 @@ class WallPass {
             static_cast<float>(1 - background());  // rho/rho0 = 1 + (p - p0)/(rho0 c0^2), nearly
         const std::array<const float*, value_count> from = water_.columns();
         FloatLaneSum all, pressure;
-        std::array<FloatLaneSum, D> velocity{};
+        std::array<FloatLaneSum, D> velocity{}, distance{};
         for (std::size_t k = 0; k < water_.size(); k += float_lane_count) {
             FloatLanes r2 = 0, depth = 0;
+            std::array<FloatLanes, D> away;
             for (int d = 0; d < D; ++d) {
                 const FloatLanes r = frame_.place(d, i) - load(from[d] + k);
                 r2 += r * r;
+                if constexpr (linearly) away[d] = r;
                 depth += static_cast<float>(weight[d]) * r;
             }
             const FloatLanes q = sqrt(r2), x = max(1 - q, FloatLanes(0.0F)), x2 = x * x;
             const FloatLanes share = x2 * x2 * (1 + 4 * q), p = load(from[at_pressure] + k);
             all.add(k, share);
             pressure.add(k, share * (p + (at_rest + p) * depth));
-            for (int d = 0; d < D; ++d) velocity[d].add(k, share * load(from[at_velocity + d] + k));
+            for (int d = 0; d < D; ++d) {
+                velocity[d].add(k, share * load(from[at_velocity + d] + k));
+                if constexpr (linearly) distance[d].add(k, share * away[d]);
+            }
         }
         const double total = all.total();
         if (total == 0) return;
@@ -90,9 +108,15 @@ class WallPass {
         std::array<double, 3> place{};
         for (int d = 0; d < D; ++d) place[d] = position_[d][i];
         const std::array<double, 3> own = array_of(wall.pose.velocity_at(vector_of(place)));
+        double ratio = 1;
+        if constexpr (linearly) {
+            double distance2 = 0;
+            for (int d = 0; d < D; ++d) distance2 += std::pow(distance[d].total() / total, 2);
+            ratio = depth_ratio<D>(std::sqrt(distance2), 1 / settings_.radius_in_spacings);
+        }
         for (int d = 0; d < D && !wall.slips; ++d)
-            velocity_[d][i] =
-                static_cast<float>(2 * own[d] / state.sound_speed - velocity[d].total() / total);
+            velocity_[d][i] = static_cast<float>((1 + ratio) * own[d] / state.sound_speed -
+                                                 ratio * velocity[d].total() / total);
         partner_pressure_[i] = static_cast<float>(pressure_[i] / (state.reference_density * sound2));
     }
     /// p0/(rho0 c0^2).
@@ -121,10 +145,16 @@ void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, cons
             pass.visit(cell, runs);
         });
     };
+    const auto in_dimension = [&]<int D>() {
+        if (settings.rheology)
+            run(WallPass<D, true>(particles, settings, walls));
+        else
+            run(WallPass<D, false>(particles, settings, walls));
+    };
     if (particles.dimension() == 2)
-        run(WallPass<2>(particles, settings, walls));
+        in_dimension.template operator()<2>();
     else
-        run(WallPass<3>(particles, settings, walls));
+        in_dimension.template operator()<3>();
 }
 
 }  // namespace talus::water

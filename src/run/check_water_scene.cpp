@@ -30,6 +30,11 @@ int check_water_scene(const Communicator& comm, const Scene& scene) {
                evolution.particles().bytes_per_particle());
     fmt::print("spacing {:.4g} m, kernel ends at {:.4g} m, sound {:.4g} m/s\n", setup.spacing,
                settings.radius(), settings.state.sound_speed);
+    if (const auto& mud = settings.rheology)
+        fmt::print(
+            "mud: viscosity up to {:.4g} Pa s, whose steps are at most {:.4g} s; below the yield stress it "
+            "creeps at less than {:.3g} 1/s\n",
+            mud->greatest_viscosity, settings.viscous_time_step(), mud->creep_rate());
     const double steps = setup.output.end_time / first_step;
     fmt::print("first time step: {:.4g} s (limited by {} at particle {}); {:.0f} such steps to {} s\n",
                first_step, evolution.simulation().step_limit().reason, evolution.simulation().step_limit().id,

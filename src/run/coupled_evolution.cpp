@@ -20,7 +20,8 @@ CoupledEvolution::CoupledEvolution(const Communicator& comm, const Scene& scene,
     : comm_(comm),
       scene_(scene),
       setup_(read_coupled_scene(comm, scene)),
-      end_time_(until.value_or(setup_.water.output.end_time)) {
+      end_time_(until.value_or(setup_.water.output.end_time)),
+      record_(setup_.water.simulation, setup_.water.body_names(), setup_.water.gauges) {
     check_snapshots(scene, output(), end_time_);
     refuse_short_box(scene, setup_.water.simulation.box, setup_.kernel_radius);
 }
@@ -153,6 +154,7 @@ std::vector<CsvColumn> CoupledEvolution::diagnostics_columns() const {
                                    {"spread_volume", "m3"},
                                    {"substeps", "1"},
                                    {"contacts", "1"}});
+    for (CsvColumn& column : record_.columns()) columns.push_back(std::move(column));
     return columns;
 }
 
@@ -170,6 +172,7 @@ Diagnostics CoupledEvolution::diagnostics() {
         found.row.end(),
         {c.imbalance, c.least_fluid_fraction, static_cast<double>(c.clipped), c.grain_volume, c.spread_volume,
          static_cast<double>(simulation_->substeps()), static_cast<double>(g.contacts)});
+    record_.measure(simulation_->water(), found.row);
     return found;
 }
 

@@ -4,6 +4,7 @@
 #include "src/coupled_simulation.hpp"
 #include "src/run/evolution.hpp"
 #include "src/setup/coupled_scene.hpp"
+#include "src/water/water_record.hpp"
 
 namespace talus {
 
@@ -53,6 +54,7 @@ class CoupledEvolution : public Evolution {
     const Scene& scene_;
     CoupledScene setup_;
     double end_time_;  ///< [s]
+    WaterRecord record_;
     std::optional<CoupledSimulation> simulation_;
     std::optional<ParticleSet> read_contacts_;  ///< of the checkpoint, until resume()
 };

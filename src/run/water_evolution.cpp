@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "domain/water_fields.hpp"
 #include "io/checkpoint.hpp"
 #include "physics/water/sound_waves.hpp"
 #include "src/run/options.hpp"
@@ -19,7 +20,8 @@ WaterEvolution::WaterEvolution(const Communicator& comm, const Scene& scene, std
     : comm_(comm),
       scene_(scene),
       setup_(read_water_scene(comm, scene)),
-      end_time_(until.value_or(setup_.output.end_time)) {
+      end_time_(until.value_or(setup_.output.end_time)),
+      record_(setup_.simulation, setup_.body_names(), setup_.gauges) {
     check_snapshots(scene, setup_.output, end_time_);
     refuse_short_box(scene, setup_.simulation.box, setup_.simulation.settings.radius());
 }
@@ -117,6 +119,7 @@ std::vector<SnapshotField> WaterEvolution::snapshot_fields() const {
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::mass, &field::density, &field::pressure, &field::body})
         fields.push_back({.field = info});
+    if (setup_.simulation.settings.rheology) fields.push_back({.field = &water_field::viscosity});
     return fields;
 }
 
@@ -138,6 +141,7 @@ std::vector<CsvColumn> WaterEvolution::diagnostics_columns() const {
         columns.push_back({fmt::format("least_{}", axis), "m"});
         columns.push_back({fmt::format("greatest_{}", axis), "m"});
     }
+    for (CsvColumn& column : record_.columns()) columns.push_back(std::move(column));
     return columns;
 }
 
@@ -150,6 +154,7 @@ Diagnostics WaterEvolution::diagnostics() {
         0};
     for (std::size_t a = 0; a < static_cast<std::size_t>(setup_.simulation.box.dimension); ++a)
         found.row.insert(found.row.end(), {t.momentum[a], t.least_place[a], t.greatest_place[a]});
+    record_.measure(*simulation_, found.row);
     return found;
 }
 

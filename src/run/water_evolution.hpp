@@ -3,6 +3,7 @@
 
 #include "src/run/evolution.hpp"
 #include "src/setup/water_scene.hpp"
+#include "src/water/water_record.hpp"
 #include "src/water_simulation.hpp"
 
 namespace talus {
@@ -53,6 +54,7 @@ class WaterEvolution : public Evolution {
     const Scene& scene_;
     WaterScene setup_;
     double end_time_;  ///< [s]
+    WaterRecord record_;
     std::optional<WaterSimulation> simulation_;
     double greatest_speed_ = 0;  ///< in any row of the diagnostics [m/s]
     bool told_of_speed_ = false;

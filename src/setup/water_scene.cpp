@@ -33,6 +33,8 @@ void read_water(const Section& table, WaterScene& scene) {
         table.number("sound_speed", "m/s", sound_over_speed * scene.greatest_speed, positive);
     settings.state.exponent = static_cast<int>(table.integer("exponent", 7, 2, 20));
     settings.state.background_pressure = table.number("background_pressure", "Pa", 0.0, not_negative);
+    if (table.has("rheology") && table.has("viscosity"))
+        table.error("viscosity", "does not go with [water.rheology], whose `consistency` it is");
     settings.viscosity = table.number("viscosity", "Pa s", 0.0, not_negative);
     settings.artificial_viscosity = table.number("artificial_viscosity", "1", 0.0, {0, 10});
     settings.density_diffusion = table.number("density_diffusion", "1", 0.1, {0, 1});
@@ -43,6 +45,27 @@ void read_water(const Section& table, WaterScene& scene) {
         settings.gravity[a] = gravity[a];
         if (box.boundary[a] != Boundary::periodic) settings.bearing[a] = gravity[a];
     }
+}
+
+/// Needs the smoothing length.
+void read_rheology(const Section& table, water::Settings& settings) {
+    if (!table.exists()) return;
+    water::Rheology flow;
+    flow.yield_stress = table.number("yield_stress", "Pa", 0.0, not_negative);
+    flow.exponent = table.number("exponent", "1", 1.0, {0.1, 2});
+    flow.consistency = table.number("consistency", flow.exponent == 1 ? "Pa s" : "1", {}, not_negative);
+    if (flow.yield_stress == 0 && flow.consistency == 0)
+        table.error("yield_stress", "and consistency are both 0; allowed: one of them above 0");
+    // What sound allows for nothing, and enough to tell what flows from what does not.
+    constexpr double many = 100;
+    const bool stiffens_at_rest = flow.yield_stress > 0 || flow.exponent < 1;
+    const double sound = settings.state.sound_speed, h = settings.smoothing_length,
+                 rho0 = settings.state.reference_density,
+                 flowing = flow.consistency * std::pow(sound / (sound_over_speed * h), flow.exponent - 1),
+                 free = 0.125 / settings.courant * rho0 * sound * h;
+    flow.greatest_viscosity = table.number("greatest_viscosity", "Pa s",
+                                           std::max(free, (stiffens_at_rest ? many : 1) * flowing), positive);
+    settings.rheology = flow;
 }
 
 void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water) {
@@ -70,6 +93,9 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
                         "is not of a body: water.density is that of all water, `surface` gives its weight");
         water.bodies.push_back(body);
         setup.walls.push_back(read_body_wall(table, box.dimension, false));
+        setup.records_force.push_back(table.flag("record_force", false));
+        if (setup.records_force.back() && !setup.walls.back())
+            table.error("record_force", "is of walls; allowed with wall = \"no_slip\" and \"free_slip\"");
         water.surface.emplace_back();
         if (!setup.walls.back() && table.has("surface")) water.surface.back() = table.number("surface", "m");
     }
@@ -97,6 +123,22 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
     if (std::none_of(setup.walls.begin(), setup.walls.end(),
                      [](const auto& wall) { return wall.has_value(); }))
         setup.walls.clear();
+    if (std::ranges::none_of(setup.records_force, [](std::uint8_t records) { return records != 0; }))
+        setup.records_force.clear();
+}
+
+std::vector<WaterGauge> read_gauges(const Section& root, const Box& box) {
+    std::vector<WaterGauge> gauges;
+    for (const Section& table : root.sections("gauge")) {
+        const WaterGauge gauge{table.text("name"), read_point(table, "place", "m", box.dimension)};
+        refuse_same_name(table, gauges, gauge.name);
+        for (std::size_t a = 0; a < static_cast<std::size_t>(box.dimension); ++a)
+            if (box.boundary[a] != Boundary::open &&
+                (gauge.place[a] < box.lower[a] || gauge.place[a] > box.upper[a]))
+                table.error("place", fmt::format("is outside the box along {}", "xyz"[a]));
+        gauges.push_back(gauge);
+    }
+    return gauges;
 }
 
 }  // namespace
@@ -123,11 +165,19 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     read_bodies(comm, scene, water);
     setup.settings.smoothing_length = smoothing * water.spacing;
     setup.settings.radius_in_spacings = water::Settings::support() * smoothing;
+    if (!scene.faulty()) read_rheology(table.section("rheology"), setup.settings);
+    water.gauges = read_gauges(root, setup.box);
     water.output = read_output(root);
     const Section run = root.section("run");
     setup.partition = read_partition(run);
     setup.rebalance_interval = read_rebalance_interval(run);
     return water;
+}
+
+std::vector<std::string> WaterScene::body_names() const {
+    std::vector<std::string> names;
+    for (const Body& body : bodies) names.push_back(body.name);
+    return names;
 }
 
 ParticleSet empty_water(const WaterSetup& setup) {

@@ -7,6 +7,7 @@
 #include "io/scene.hpp"
 #include "src/setup/bodies.hpp"
 #include "src/setup/scene_setup.hpp"
+#include "src/water/gauges.hpp"
 #include "src/water_simulation.hpp"
 
 namespace talus {
@@ -20,8 +21,11 @@ struct WaterScene {
     std::vector<std::optional<double>> surface;  ///< of a body at rest under it: height against gravity [m]
     double spacing = 0;                          ///< of the water [m]
     double greatest_speed = 0;                   ///< that the scene expects [m/s]; 0: not said
+    std::vector<WaterGauge> gauges{};
     OutputPlan output;
     std::uint64_t seed = 0;
+
+    std::vector<std::string> body_names() const;
 };
 
 /// Whether a scene describes water.

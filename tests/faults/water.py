@@ -42,6 +42,18 @@ class Water(Case):
     def test_a_negative_viscosity(self):
         self.check("[water]", "[water]\nviscosity = -1", r"scene\.toml:3: water\.viscosity = -1")
 
+    def test_mud(self):
+        mud = "artificial_viscosity = 0.02\n[water.rheology]\n"
+        for keys, pattern in (("consistency = 0", r"water\.rheology.*both 0"),
+                              ("consistency = 1\nyield_stress = -1", r"scene\.toml:8: water\.rheology\.yield_stress = -1")):
+            self.check("artificial_viscosity = 0.02\n", mud + keys + "\n", pattern)
+        self.check("artificial_viscosity = 0.02\n", "viscosity = 1\n" + mud + "consistency = 1\n", r"water\.viscosity = .*water\.rheology")
+
+    def test_what_is_recorded(self):
+        self.check("surface = 0.2\n", "surface = 0.2\nrecord_force = true\n", r"scene\.toml:14: body\[0\]\.record_force .*of walls")
+        self.check("[run]", '[[gauge]]\nname = "a"\nplace = [0, 0]\n[[gauge]]\nname = "a"\nplace = [0, 0]\n[run]',
+                   r"gauge\[1\]\.name = .*another of the name 'a'")
+
     def test_an_unknown_key(self):
         self.check("artificial_viscosity", "artificial_viscocity", r"artificial_viscocity")
 

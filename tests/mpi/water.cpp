@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "io/agree.hpp"
 #include "src/setup/water_scene.hpp"
+#include "src/water/water_record.hpp"
 #include "tests/support/gathered.hpp"
 
 namespace talus::test {
@@ -40,6 +42,7 @@ lower = [0, -0.1]
 upper = [0.8, 0]
 lattice = "cubic"
 wall = "no_slip"
+record_force = true
 motion = { velocity = [0, 0.2] }
 [run]
 end_time = 1
@@ -71,10 +74,19 @@ lower = [0, 0, -0.16]
 upper = [0.64, 0.32, 0]
 lattice = "cubic"
 wall = "free_slip"
+record_force = true
 [run]
 end_time = 1
 rebalance_interval = 2
 )";
+
+/// The first as mud.
+const std::string mud = [] {
+    std::string text = plane;
+    const std::string viscosity = "viscosity = 0.5\n";
+    text.replace(text.find(viscosity), viscosity.size(), "");
+    return text + "[water.rheology]\nyield_stress = 200\nconsistency = 5\nexponent = 0.6\n";
+}();
 
 constexpr int steps = 20, stop = 7;
 
@@ -84,20 +96,37 @@ WaterScene scene_of(const Communicator& comm, const char* text, PartitionMethod 
     return scene;
 }
 
-GatheredState run(const Communicator& comm, const char* text, PartitionMethod method) {
+/// What the diagnostics say of walls and of two gauges.
+std::vector<double> measured(const WaterScene& scene, WaterSimulation& simulation) {
+    std::vector<double> row;
+    const Point low{0.1, 0.02, 0.02}, high{0.2, 0.2, 0.2};
+    WaterRecord(scene.simulation, scene.body_names(), {{"low", low}, {"high", high}})
+        .measure(simulation, row);
+    return row;
+}
+
+struct Outcome {
+    GatheredState state;
+    std::vector<double> measured;
+    bool operator==(const Outcome&) const = default;
+};
+
+Outcome run(const Communicator& comm, const char* text, PartitionMethod method) {
     const WaterScene scene = scene_of(comm, text, method);
     WaterSimulation simulation(comm, scene.simulation, make_water(comm, scene));
     simulation.start();
     for (int k = 0; k < steps; ++k) simulation.step();
-    return gather_state(comm, simulation.particles());
+    return {gather_state(comm, simulation.particles()), measured(scene, simulation)};
 }
 
 class WaterSameBits : public testing::TestWithParam<const char*> {};
 
 TEST_P(WaterSameBits, OnAnyRanks) {
     const Communicator alone(MPI_COMM_SELF), world(MPI_COMM_WORLD);
-    const GatheredState expected = run(alone, GetParam(), PartitionMethod::slabs);
-    EXPECT_GT(expected.ids.size(), 400u);
+    const Outcome expected = run(alone, GetParam(), PartitionMethod::slabs);
+    EXPECT_GT(expected.state.ids.size(), 400u);
+    EXPECT_NE(expected.measured.front(), 0);
+    EXPECT_NE(expected.measured.back(), 0);
     for (const PartitionMethod method : {PartitionMethod::cheapest, PartitionMethod::scrambled})
         EXPECT_TRUE(run(world, GetParam(), method) == expected);
 }
@@ -121,11 +150,16 @@ TEST_P(WaterSameBits, AfterInterruption) {
     WaterSimulation second(world, other, std::move(particles));
     second.resume(first.time(), first.time_step(), first.step_count(), numbers);
     for (int k = stop; k < steps; ++k) second.step();
-    EXPECT_TRUE(gather_state(world, second.particles()) == run(alone, GetParam(), PartitionMethod::slabs));
+    const Outcome after{gather_state(world, second.particles()), measured(scene, second)};
+    EXPECT_TRUE(after == run(alone, GetParam(), PartitionMethod::slabs));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space),
-                         [](const auto& scene) { return scene.index == 0 ? "plane" : "space"; });
+std::string name_of(const testing::TestParamInfo<const char*>& scene) {
+    constexpr std::array names{"plane", "space", "mud"};
+    return names[scene.index];
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space, mud.c_str()), name_of);
 
 /// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that
 /// has it.
