@@ -153,6 +153,9 @@ std::vector<CsvColumn> CoupledEvolution::diagnostics_columns() const {
                                    {"spread_volume", "m3"},
                                    {"substeps", "1"},
                                    {"contacts", "1"}});
+    if (simulation_->holds_some_grains())
+        for (const char axis : {'x', 'y', 'z'})
+            columns.push_back({fmt::format("force_on_held_grains_{}", axis), "N"});
     return columns;
 }
 
@@ -170,6 +173,8 @@ Diagnostics CoupledEvolution::diagnostics() {
         found.row.end(),
         {c.imbalance, c.least_fluid_fraction, static_cast<double>(c.clipped), c.grain_volume, c.spread_volume,
          static_cast<double>(simulation_->substeps()), static_cast<double>(g.contacts)});
+    if (simulation_->holds_some_grains())
+        found.row.insert(found.row.end(), c.held_force.begin(), c.held_force.end());
     return found;
 }
 
