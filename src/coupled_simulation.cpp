@@ -81,6 +81,12 @@ void CoupledSimulation::save_numbers(std::map<std::string, double>& numbers) con
     numbers["grain_steps"] = static_cast<double>(grains_.step_count());
 }
 
+bool CoupledSimulation::holds_some_grains() const {
+    const auto& held = setup_.grains.held;
+    return std::ranges::any_of(held, [](std::uint8_t h) { return h != 0; }) &&
+           std::ranges::any_of(held, [](std::uint8_t h) { return h == 0; });
+}
+
 int CoupledSimulation::substeps() const {
     return static_cast<int>(std::lround(water_.time_step() / grains_.time_step()));
 }
@@ -193,8 +199,9 @@ void CoupledSimulation::immerse() {
     const double* solid = water.particles.data(of::solid_fraction);
     for (std::size_t a = 0; a < water.particles.size(); ++a) {
         if (volume[a] == 0) continue;
-        water.particles.data(field::mass)[a] *= 1 - solid[a];
-        water.particles.data(field::density)[a] *= 1 - solid[a];
+        const double left = water::share_of_water(solid[a]);
+        water.particles.data(field::mass)[a] *= left;
+        water.particles.data(field::density)[a] *= left;
     }
 }
 
@@ -285,7 +292,7 @@ void CoupledSimulation::weigh_work() {
 CouplingTotals CoupledSimulation::totals() const {
     enum Sum {
         on_grains,
-        on_water = 3,
+        on_held = 3,
         together = 6,
         sizes = 9,
         volume,
@@ -298,16 +305,20 @@ CouplingTotals CoupledSimulation::totals() const {
     const auto add = [&](int sum, double value) { sums[static_cast<std::size_t>(sum)].add(value); };
     CouplingTotals totals;
     std::array<double, 2> greatest{0, 0};  // solid fraction, kernel sum
+    const bool some_held = holds_some_grains();
     for (std::size_t i = 0; i < immersed_.size(); ++i) {
         const double sum = immersed_.data(of::kernel_sum)[i], whole = ball(immersed_.data(field::radius)[i]);
         const double m = immersed_.data(field::mass)[i];
+        const bool held = setup_.grains.held[immersed_.data(field::body)[i]] != 0,
+                   placed = !held || !some_held;
         add(volume, whole);
-        add(mass, m);
+        if (placed) add(mass, m);
         greatest[1] = std::max(greatest[1], sum);
         for (int axis = 0; axis < 3; ++axis) {
             const double f = immersed_.data(of::exchanged_force, axis)[i];
             add(on_grains + axis, f);
-            add(places + axis, m * immersed_.data(field::position, axis)[i]);
+            if (held) add(on_held + axis, f);
+            if (placed) add(places + axis, m * immersed_.data(field::position, axis)[i]);
             add(together + axis, f);
             add(sizes, std::abs(f));
         }
@@ -329,6 +340,8 @@ CouplingTotals CoupledSimulation::totals() const {
     for (int axis = 0; axis < 3; ++axis) {
         totals.force[static_cast<std::size_t>(axis)] =
             sums[static_cast<std::size_t>(on_grains + axis)].value();
+        totals.held_force[static_cast<std::size_t>(axis)] =
+            sums[static_cast<std::size_t>(on_held + axis)].value();
         const double left = sums[static_cast<std::size_t>(together + axis)].value();
         left2 += left * left;
     }

@@ -29,7 +29,9 @@ struct CoupledSetup {
 /// What water and grains exchange: exact sums rounded once.
 struct CouplingTotals {
     std::array<double, 3> force{};       ///< of the water on all grains at the last exchange [N]
-    std::array<double, 3> mean_place{};  ///< of the grains, weighted by mass [m]
+    std::array<double, 3> held_force{};  ///< on those of them that are held [N]
+    /// Of the grains that are not held, of all if every one is, weighted by mass [m].
+    std::array<double, 3> mean_place{};
     double imbalance = 0;  ///< |forces on grains and water together| over the sum of their sizes [1]
     double least_fluid_fraction = 1, greatest_kernel_sum = 0;
     double grain_volume = 0, spread_volume = 0;  ///< of all grains, and as the water sees it [m3]
@@ -67,6 +69,8 @@ class CoupledSimulation {
     const GrainSimulation& grains() const { return grains_; }
     GrainSimulation& grains() { return grains_; }
     const CoupledSetup& setup() const { return setup_; }
+    /// Whether some grains are held and others move.
+    bool holds_some_grains() const;
     /// Steps of the grains in the next one of the water.
     int substeps() const;
     /// Collective.

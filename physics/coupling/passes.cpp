@@ -64,18 +64,41 @@ dem::Vector3<> place_of(const std::array<const double*, 3>& position, std::size_
     return {position[0][i], position[1][i], position[2][i]};
 }
 
-/// Calls visit(k, weight) for the places that have a weight at `centre`.
+/// Places in reach of one centre, with their weights.
+struct Reached {
+    std::vector<double> r2, weight;
+    std::vector<std::uint32_t> place;
+
+    /// Makes room for all places of a cell.
+    void reserve(std::size_t count) {
+        r2.resize(count);
+        weight.resize(count);
+        place.resize(count);
+    }
+};
+
+/// Calls visit(k, weight) for the places that have a weight at `centre`. Those in reach are put side by side
+/// first, without branches, so that weights are found several at a time.
 template <class Weight, class Visit>
 void for_each_weight(const Places& places, const dem::Vector3<>& centre, double radius, const Weight& weight,
-                     std::vector<double>& r2, Visit&& visit) {
-    r2.resize(places.size());
+                     Reached& reached, Visit&& visit) {
+    reached.reserve(places.size());
+    double *r2 = reached.r2.data(), *found = reached.weight.data();
+    std::uint32_t* place = reached.place.data();
     for (std::size_t k = 0; k < places.size(); ++k) {
         const double x = centre.x - places.x[k], y = centre.y - places.y[k], z = centre.z - places.z[k];
         r2[k] = x * x + y * y + z * z;
     }
     const double radius2 = radius * radius;
-    for (std::size_t k = 0; k < places.size(); ++k)
-        if (r2[k] < radius2) visit(k, weight(r2[k]));
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const double distance2 = r2[k];
+        r2[count] = distance2;
+        place[count] = static_cast<std::uint32_t>(k);
+        count += distance2 < radius2 ? 1 : 0;
+    }
+    for (std::size_t n = 0; n < count; ++n) found[n] = weight(r2[n]);
+    for (std::size_t n = 0; n < count; ++n) visit(place[n], found[n]);
 }
 
 /// Calls with_weight(w) with the weight function that is asked for.
@@ -113,7 +136,7 @@ template <class Begin, class Pair, class End>
 void for_each_grain(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair, End&& end) {
     const double* volume = m.fluid.data(of::quadrature_volume);
     Places near;
-    std::vector<double> r2;
+    Reached reached;
     std::vector<dem::Vector3<>> images;
     const auto append = [&](std::uint32_t a, const dem::Vector3<>& place) {
         if (volume[a] > 0) near.append(place, a);
@@ -124,7 +147,7 @@ void for_each_grain(const Mixture& m, const Spreading& spreading, Begin&& begin,
                          begin(i);
                          list_images(place, spreading.planes, spreading.radius, images);
                          for (const dem::Vector3<>& image : images)
-                             for_each_weight(near, image, spreading.radius, weight, r2,
+                             for_each_weight(near, image, spreading.radius, weight, reached,
                                              [&](std::size_t k, double w) { pair(near.index[k], w); });
                          end(i);
                      });
@@ -137,7 +160,7 @@ template <class Begin, class Pair, class End>
 void for_each_fluid(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair, End&& end) {
     const double* volume = m.fluid.data(of::quadrature_volume);
     Places near;
-    std::vector<double> r2;
+    Reached reached;
     std::vector<dem::Vector3<>> images;
     const auto append = [&](std::uint32_t i, const dem::Vector3<>& place) {
         list_images(place, spreading.planes, spreading.radius, images);
@@ -148,7 +171,7 @@ void for_each_fluid(const Mixture& m, const Spreading& spreading, Begin&& begin,
                      [&](std::uint32_t a, const dem::Vector3<>& place) {
                          begin(a);
                          if (volume[a] > 0)
-                             for_each_weight(near, place, spreading.radius, weight, r2,
+                             for_each_weight(near, place, spreading.radius, weight, reached,
                                              [&](std::size_t k, double w) { pair(near.index[k], w); });
                          end(a);
                      });

@@ -155,6 +155,9 @@ std::vector<CsvColumn> CoupledEvolution::diagnostics_columns() const {
                                    {"substeps", "1"},
                                    {"contacts", "1"}});
     for (CsvColumn& column : record_.columns()) columns.push_back(std::move(column));
+    if (simulation_->holds_some_grains())
+        for (const char axis : {'x', 'y', 'z'})
+            columns.push_back({fmt::format("force_on_held_grains_{}", axis), "N"});
     return columns;
 }
 
@@ -173,6 +176,8 @@ Diagnostics CoupledEvolution::diagnostics() {
         {c.imbalance, c.least_fluid_fraction, static_cast<double>(c.clipped), c.grain_volume, c.spread_volume,
          static_cast<double>(simulation_->substeps()), static_cast<double>(g.contacts)});
     record_.measure(simulation_->water(), found.row);
+    if (simulation_->holds_some_grains())
+        found.row.insert(found.row.end(), c.held_force.begin(), c.held_force.end());
     return found;
 }
 

@@ -44,8 +44,12 @@ class Sampling {
                 if (!is_near(offset)) continue;
                 const double density = particles.data(field::density)[i],
                              share = water::share_of_water(solid ? solid[i] : 0);
-                Sample sample{particles.data(field::id)[i], k, offset, {},
-                              particles.data(field::mass)[i] / density, density / share,
+                Sample sample{particles.data(field::id)[i],
+                              k,
+                              offset,
+                              {},
+                              particles.data(field::mass)[i] / density,
+                              density / share,
                               settings_.state.pressure(density / share)};
                 for (int a = 0; a < particles.dimension(); ++a)
                     sample.velocity[static_cast<std::size_t>(a)] = particles.data(field::velocity, a)[i];
@@ -81,7 +85,8 @@ class Sampling {
             const auto a = static_cast<std::size_t>(axis);
             offset[a] = particles.data(field::position, axis)[i] - gauge[a];
             const double length = box_.upper[a] - box_.lower[a];
-            if (box_.boundary[a] == Boundary::periodic) offset[a] -= length * std::nearbyint(offset[a] / length);
+            if (box_.boundary[a] == Boundary::periodic)
+                offset[a] -= length * std::nearbyint(offset[a] / length);
         }
         return offset;
     }
@@ -136,9 +141,8 @@ std::vector<WaterReading> read_gauges(const WaterSimulation& simulation, std::sp
     for (std::size_t k = 0; k < gauges.size(); ++k) {
         const auto end = std::find_if(begin, all.end(), [k](const Sample& s) { return s.gauge != k; });
         const std::span<const Sample> near(begin, end);
-        readings.push_back(simulation.particles().dimension() == 2
-                               ? sampling.reading<2>(near, gauges[k])
-                               : sampling.reading<3>(near, gauges[k]));
+        readings.push_back(simulation.particles().dimension() == 2 ? sampling.reading<2>(near, gauges[k])
+                                                                   : sampling.reading<3>(near, gauges[k]));
         begin = end;
     }
     return readings;

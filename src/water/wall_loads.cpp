@@ -9,7 +9,8 @@ namespace talus {
 std::vector<WallLoad> wall_loads(WaterSimulation& simulation) {
     const WaterSetup& setup = simulation.setup();
     ParticleSet& particles = simulation.access().particles;
-    water::find_wall_forces(particles, simulation.decomposition().table(), setup.settings, setup.records_force);
+    water::find_wall_forces(particles, simulation.decomposition().table(), setup.settings,
+                            setup.records_force);
     std::vector<std::size_t> place(setup.records_force.size());  // of a body among those that are recorded
     std::vector<dem::Vector3<>> centres;
     for (std::size_t b = 0; b < place.size(); ++b) {

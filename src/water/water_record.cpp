@@ -37,7 +37,9 @@ std::vector<CsvColumn> WaterRecord::columns() const {
 }
 
 void WaterRecord::measure(WaterSimulation& simulation, std::vector<double>& row) const {
-    const auto component = [](const auto& v, char axis) { return axis == 'x' ? v.x : axis == 'y' ? v.y : v.z; };
+    const auto component = [](const auto& v, char axis) {
+        return axis == 'x' ? v.x : axis == 'y' ? v.y : v.z;
+    };
     if (!recorded_.empty())
         for (const WallLoad& load : wall_loads(simulation)) {
             for (const char axis : axes_) row.push_back(component(load.force, axis));

@@ -11,7 +11,8 @@ namespace talus {
 class WaterRecord {
   public:
     /// `names`: of the bodies.
-    WaterRecord(const WaterSetup& setup, const std::vector<std::string>& names, std::vector<WaterGauge> gauges);
+    WaterRecord(const WaterSetup& setup, const std::vector<std::string>& names,
+                std::vector<WaterGauge> gauges);
 
     std::vector<CsvColumn> columns() const;
     /// Appends their values. Collective.

@@ -64,6 +64,10 @@ class Coupling(Case):
     def test_denser_than_grains_pack(self):
         self.check({"spacing = 0.002\n": "spacing = 0.00085\n"}, r"grains = .*denser than grains pack")
 
+    def test_more_grains_than_space(self):
+        self.check({"spacing = 0.002\n": "spacing = 0.00085\n", "radius = 0.0005": "radius = 0.0006"},
+                   r"grains = .*they leave -0\.\d+ of the volume .*denser than grains pack")
+
     def test_gravity_of_one_only(self):
         self.check({'"periodic", "periodic", "periodic"': '"periodic", "periodic", "open"',
                     "greatest_speed = 0.1": "greatest_speed = 0.1\ngravity = [0, 0, -9.81]"},

@@ -1,24 +1,15 @@
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "physics/coupling/drag.hpp"
 #include "physics/coupling/lift.hpp"
+#include "tests/support/root_of.hpp"
 
 namespace talus::coupling {
 namespace {
 
 constexpr double gravity = 9.81;
 using std::numbers::pi;
-
-/// Smallest x in [low, high] at which the growing function f passes zero.
-double root_of(const std::function<double(double)>& f, double low, double high) {
-    for (int k = 0; k < 200; ++k) {
-        const double middle = 0.5 * (low + high);
-        (f(middle) < 0 ? low : high) = middle;
-    }
-    return high;
-}
+using test::root_of;
 
 /// Total force of the fluid, with the part of the pressure gradient, over that of Stokes at the superficial
 /// velocity.

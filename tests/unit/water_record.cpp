@@ -12,7 +12,9 @@ namespace {
 /// Water between a floor and two walls that stick to it, of one material or another.
 WaterScene tank(const Communicator& comm, const std::string& viscosity) {
     const std::string wall = "lattice = \"cubic\"\nwall = \"no_slip\"\nrecord_force = true\n";
-    return read_water_scene(comm, Scene::parse("dimension = 2\n[water]\ngreatest_speed = 2\ngravity = [0, -10]\n" + viscosity + R"(
+    return read_water_scene(
+        comm,
+        Scene::parse("dimension = 2\n[water]\ngreatest_speed = 2\ngravity = [0, -10]\n" + viscosity + R"(
 [[body]]
 name = "water"
 shape = "box"
@@ -27,10 +29,11 @@ name = "floor"
 shape = "box"
 lower = [-0.2, -0.2]
 upper = [1.2, 0]
-)" + wall + "[[body]]\nname = \"left\"\nshape = \"box\"\nlower = [-0.2, 0]\nupper = [0, 0.7]\n" + wall +
-                                                   "[[body]]\nname = \"right\"\nshape = \"box\"\nlower = [1, 0]\nupper = [1.2, 0.7]\n" +
-                                                   wall + "[run]\nend_time = 1\n",
-                                               "tank.toml"));
+)" + wall + "[[body]]\nname = \"left\"\nshape = \"box\"\nlower = [-0.2, 0]\nupper = [0, 0.7]\n" +
+                         wall +
+                         "[[body]]\nname = \"right\"\nshape = \"box\"\nlower = [1, 0]\nupper = [1.2, 0.7]\n" +
+                         wall + "[run]\nend_time = 1\n",
+                     "tank.toml"));
 }
 
 class WallLoads : public testing::TestWithParam<const char*> {};
@@ -62,9 +65,10 @@ TEST_P(WallLoads, BalanceTheMomentumOfTheWater) {
     EXPECT_GT(on_walls.x, 0.01 * weight);
 }
 
-INSTANTIATE_TEST_SUITE_P(Viscosities, WallLoads,
-                         testing::Values("artificial_viscosity = 0.1", "viscosity = 5",
-                                         "[water.rheology]\nyield_stress = 50\nconsistency = 5\nexponent = 0.5"));
+INSTANTIATE_TEST_SUITE_P(
+    Viscosities, WallLoads,
+    testing::Values("artificial_viscosity = 0.1", "viscosity = 5",
+                    "[water.rheology]\nyield_stress = 50\nconsistency = 5\nexponent = 0.5"));
 
 // Water at rest under its weight: rho g depth to what a compressibility of a per cent makes of it, also where
 // half of the kernel is wall; its level to a hundredth of the spacing in the middle. Above it is dry.
@@ -72,7 +76,8 @@ TEST(Gauges, OfWaterAtRest) {
     const Communicator world(MPI_COMM_WORLD);
     const WaterScene scene = tank(world, "");
     const WaterSimulation run(world, scene.simulation, make_water(world, scene));
-    const std::vector<WaterGauge> gauges{{"middle", {0.5, 0.2, 0}}, {"corner", {0, 0, 0}}, {"dry", {0.5, 0.8, 0}}};
+    const std::vector<WaterGauge> gauges{
+        {"middle", {0.5, 0.2, 0}}, {"corner", {0, 0, 0}}, {"dry", {0.5, 0.8, 0}}};
     const std::vector<WaterReading> found = read_gauges(run, gauges);
     EXPECT_NEAR(found[0].pressure, 1000 * 10 * 0.3, 0.01 * 5000);
     EXPECT_NEAR(found[1].pressure, 1000 * 10 * 0.5, 0.01 * 5000);

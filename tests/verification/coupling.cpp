@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/support/coupled_run.hpp"
+#include "tests/support/root_of.hpp"
 
 /// Water and grains against closed forms: what drag, buoyancy and the balance of both phases' momentum ask
 /// for.
@@ -13,14 +14,6 @@ namespace talus::test {
 namespace {
 
 const std::filesystem::path runs = std::filesystem::path(TALUS_SOURCE_DIR) / "runs";
-
-double root_of(const std::function<double(double)>& f, double low, double high) {
-    for (int k = 0; k < 100; ++k) {
-        const double middle = 0.5 * (low + high);
-        (f(middle) < 0 ? low : high) = middle;
-    }
-    return low;
-}
 
 struct MeanVelocities {
     double water = 0, grains = 0;  ///< mean velocities [m/s]
