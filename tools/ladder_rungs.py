@@ -29,3 +29,10 @@ def draw_rungs(axes, rows, label_of, place_of=lambda row: (4, 4)):
         axes.semilogx(cost, row["run_out"], "o", color=COLOURS[row["family"]])
         axes.annotate(label_of(row), (cost, row["run_out"]), textcoords="offset points", xytext=place_of(row), fontsize=7)
     axes.set(xlabel="processor time [s]; closed forms at 1e-3", ylabel="run-out / length of the column", xlim=(5e-4, 2e4))
+
+
+def point_out_cheapest(axes, rows, serves, label, place=(14, -34)):
+    """An arrow at the row of least cost for which serves(row)."""
+    row = min((row for row in rows if serves(row)), key=lambda row: row["processor_seconds"])
+    axes.annotate(label, (max(row["processor_seconds"], 1e-3), row["run_out"]), textcoords="offset points", xytext=place,
+                  fontsize=7, arrowprops={"arrowstyle": "->", "color": "#c0392b"})

@@ -8,7 +8,7 @@ TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TOP / "tools"))
 from charts import column_collapse as grains  # noqa: E402
 from charts import soil_collapse as soil  # noqa: E402
-from ladder_rungs import draw_rungs, measured  # noqa: E402
+from ladder_rungs import draw_rungs, measured, point_out_cheapest  # noqa: E402
 
 TITLE = "Run-out of a column, height = length, against the cost of its model"
 PROGRAMS = ["talus"]
@@ -59,5 +59,6 @@ def draw(rows, plt):
     figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
     axes.axhspan(rows[0]["low"], rows[0]["high"], color="#dddddd", label="experiments (Lube, Lajeunesse)")
     draw_rungs(axes, rows, lambda row: row["rung"])
+    point_out_cheapest(axes, rows, lambda row: row["low"] < row["run_out"] < row["high"], "cheapest within the experiments")
     axes.legend(fontsize=8)
     return figure

@@ -12,7 +12,7 @@ TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(TOP / "tools"))
 from charts import column_collapse as grains  # noqa: E402
 from charts import soil_collapse as soil  # noqa: E402
-from ladder_rungs import draw_rungs, measured  # noqa: E402
+from ladder_rungs import draw_rungs, measured, point_out_cheapest  # noqa: E402
 from talus_output import snapshot_series  # noqa: E402
 
 TITLE = "Run-out of a column, height = length, down 15 degrees, against the cost of its model"
@@ -100,4 +100,7 @@ def draw(rows, plt):
     axes.axhline(reference, color="#dddddd", linewidth=4, zorder=0)
     draw_rungs(axes, rows, lambda row: f"{row['rung']}: {row['run_out'] / reference - 1:+.0%}",
                lambda row: (4, -10) if "pore" in row["rung"] else (-95, 4) if "10 mm" in row["rung"] else (4, 4))
+    near = 0.1
+    point_out_cheapest(axes, rows, lambda row: row["rung"] != REFERENCE and abs(row["run_out"] / reference - 1) < near,
+                       f"cheapest within {near:.0%} of it", (-90, 40))
     return figure
