@@ -22,6 +22,7 @@ WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, Par
       particles_(std::move(particles)),
       decomposition_(comm, setup_.partition) {
     decomposition_.expect(particles_);
+    if (!setup_.open.buffers.empty()) open_ = std::make_unique<OpenBoundaries>(comm_, setup_.open);
 }
 
 void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup) {
@@ -62,13 +63,16 @@ void WaterSimulation::arrange() {
 }
 
 void WaterSimulation::start() {
+    if (open_) open_->begin(particles_);
     arrange();
     evaluate(0, 0);
+    if (open_) open_->look(seeing_);
     conclude_step();
 }
 
 void WaterSimulation::resume(double time, double time_step, std::uint64_t step,
-                             const std::map<std::string, double>&) {
+                             const std::map<std::string, double>& numbers) {
+    if (open_) open_->restore(numbers, particles_);
     time_ = time;
     time_step_ = time_step;
     step_ = step;
@@ -83,6 +87,7 @@ void WaterSimulation::step() {
     sph::drift(particles_, dt);
     water::shift(particles_, dt);
     apply_boundaries(particles_, setup_.box);
+    if (open_) pass_open_ends();
     phases_.enter(Phase::decompose);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
     if (work_measured_ && interval > 0 && step_ % interval == 0)
@@ -97,6 +102,12 @@ void WaterSimulation::step() {
     phases_.stop();
 }
 
+void WaterSimulation::pass_open_ends() {
+    const OpenBoundaries::Change change = open_->apply(particles_, setup_.settings, time_);
+    if (change.added.count() + change.removed.count() > 0)
+        decomposition_.expect_change(change.added, change.removed);
+}
+
 /// Everything that follows from positions, velocities and densities at `time`, `time_ahead` of the state.
 void WaterSimulation::evaluate(double time_ahead, double time) {
     if (before_evaluation_) before_evaluation_(time);
@@ -109,12 +120,14 @@ void WaterSimulation::evaluate(double time_ahead, double time) {
     const std::initializer_list<const FieldInfo*> partners = {
         &field::position, &water_field::partner_velocity, &water_field::partner_volume,
         &water_field::partner_pressure, &water_field::partner_density};
-    if (!walls.empty()) {  // which see the water's copies before copies of theirs are made
+    if (open_) water::prepare_buffers(particles_, setup_.open.buffers);
+    if (!walls.empty() || open_) {  // which see the water's copies before copies of theirs are made
         phases_.enter(Phase::halo);
         halo.begin(particles_, partners);
         halo.finish();
         phases_.enter(Phase::gradients);
-        water::wall_pass(particles_, table, Cells::all, settings, walls);
+        if (!walls.empty()) water::wall_pass(particles_, table, Cells::all, settings, walls);
+        if (open_) seeing_ = water::buffer_pass(particles_, table, settings, setup_.open.buffers);
     }
     pass_count_.pairs = 0;
     pass_count_.work_of_cell.assign(decomposition_.own_cells().size(), 0.0);

@@ -19,6 +19,7 @@
 #include "physics/water/passes.hpp"
 #include "physics/water/settings.hpp"
 #include "src/phases.hpp"
+#include "src/water/open_boundaries.hpp"
 
 namespace talus {
 
@@ -27,6 +28,7 @@ struct WaterSetup {
     Box box;
     water::Settings settings;
     std::vector<std::optional<sph::Wall>> walls;  ///< one a body: it is a wall; empty: none is
+    OpenPlan open{};                              ///< inflows and outflows
     std::vector<std::uint8_t> records_force{};    ///< one a body, not 0: its force is; empty: of none
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance
@@ -101,14 +103,24 @@ class WaterSimulation {
         pairs_ = 0;
         phases_ = {};
     }
-    void save_numbers(std::map<std::string, double>&) const {}
+    void save_numbers(std::map<std::string, double>& numbers) const {
+        if (open_) open_->save(numbers);
+    }
+    /// Inflows and outflows; null if the scene has none.
+    OpenBoundaries* open() { return open_.get(); }
+    const OpenBoundaries* open() const { return open_.get(); }
+    /// Whether a body is neither a wall nor an inflow or outflow.
+    bool is_water(std::size_t body) const {
+        return (setup_.walls.empty() || !setup_.walls[body]) &&
+               (setup_.open.buffers.empty() || !setup_.open.buffers[body].is_open());
+    }
     /// Collective.
     WaterTotals totals() const;
 
   private:
     void arrange();
-    bool is_wall(std::size_t body) const { return !setup_.walls.empty() && setup_.walls[body]; }
     void evaluate(double time_ahead, double time);
+    void pass_open_ends();
     std::vector<sph::WallNow> walls_at(double time) const;
     void conclude_step();
 
@@ -118,6 +130,8 @@ class WaterSimulation {
     ParticleSet particles_;
     Decomposition decomposition_;
     std::unique_ptr<CellGrid> grid_;
+    std::unique_ptr<OpenBoundaries> open_;
+    std::vector<std::uint64_t> seeing_;  ///< own particles of each open end that see water
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     sph::PassCount pass_count_;

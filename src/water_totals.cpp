@@ -25,7 +25,7 @@ WaterTotals WaterSimulation::totals() const {
         extremes[k + extreme_count] = std::max(extremes[k + extreme_count], -value);
     };
     for (std::size_t i = 0; i < particles_.size(); ++i) {
-        if (is_wall(particles_.data(field::body)[i])) continue;
+        if (!is_water(particles_.data(field::body)[i])) continue;
         ++count;
         const double m = particles_.data(field::mass)[i],
                      rho = particles_.data(field::density)[i] / (1 - (solid ? solid[i] : 0.0));

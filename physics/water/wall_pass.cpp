@@ -47,7 +47,7 @@ class WallPass {
         gather(cell, runs);
         if (water_.size() == 0) return;
         for (std::uint32_t i = cell.begin; i < cell.end; ++i)
-            if (is_wall(volume_[i])) extrapolate(i);
+            if (is_wall(volume_[i]) && walls_[body_[i]].is_wall) extrapolate(i);  // not an open end
     }
 
   private:

@@ -97,13 +97,19 @@ ReadCheckpoint WaterEvolution::read(const std::filesystem::path& what,
 void WaterEvolution::describe(RunState& state) const {
     for (std::size_t b = 0; b < setup_.bodies.size(); ++b) {
         const bool is_wall = !setup_.simulation.walls.empty() && setup_.simulation.walls[b];
-        state.materials.push_back(fmt::format("{} ({})", setup_.bodies[b].name, is_wall ? "wall" : "water"));
+        const auto& ends = setup_.simulation.open.buffers;
+        const char* what = is_wall ? "wall" : "water";
+        if (!ends.empty() && ends[b].is_open())
+            what = ends[b].kind == water::Buffer::Kind::inflow ? "inflow" : "outflow";
+        state.materials.push_back(fmt::format("{} ({})", setup_.bodies[b].name, what));
     }
     if (simulation_) simulation_->save_numbers(state.numbers);
 }
 
 std::vector<std::string> WaterEvolution::news() {
     constexpr double slow = 0.15;  // of the speed of sound: changes of the density of about a per cent
+    if (OpenBoundaries* open = simulation_->open())
+        if (std::vector<std::string> notes = open->take_notes(); !notes.empty()) return notes;
     if (told_of_speed_) return {};
     const double sound = setup_.simulation.settings.state.sound_speed;
     if (greatest_speed_ < slow * sound) return {};

@@ -104,6 +104,8 @@ void refuse_together(const Section& root, const CoupledScene& scene) {
     const GrainSetup& grains = scene.grains.simulation;
     for (const char* name : {"source", "sink", "settle", "bond", "gravity"})
         if (root.has(name)) root.error(name, "does not go with grains in water");
+    if (!scene.water.simulation.open.buffers.empty())
+        root.error("body", "inflows and outflows of water do not go with grains in it");
     if (scene.water.simulation.settings.rheology)
         root.section("water").error(
             "rheology", "does not go with grains: their drag is that in a fluid of one viscosity");

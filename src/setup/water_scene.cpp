@@ -68,6 +68,20 @@ void read_rheology(const Section& table, water::Settings& settings) {
     settings.rheology = flow;
 }
 
+/// What follows from all bodies, of which `first` is the first of water.
+void complete_open_ends(std::uint8_t first, WaterScene& water) {
+    OpenPlan& open = water.simulation.open;
+    if (std::ranges::none_of(open.buffers, [](const water::Buffer& buffer) { return buffer.is_open(); })) {
+        open.buffers.clear();
+        return;
+    }
+    for (std::size_t b = 0; b < open.buffers.size(); ++b)
+        open.buffers[b].particle_volume = water.census[b].particle_volume;
+    open.names = water.body_names();
+    open.water = first;
+    open.spacing = water.spacing;
+}
+
 void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water) {
     const Section root = scene.root();
     WaterSetup& setup = water.simulation;
@@ -96,6 +110,12 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
         setup.records_force.push_back(table.flag("record_force", false));
         if (setup.records_force.back() && !setup.walls.back())
             table.error("record_force", "is of walls; allowed with wall = \"no_slip\" and \"free_slip\"");
+        OpenEnd end = read_open_end(table, body, box);
+        if (setup.walls.back() && end.buffer.is_open())
+            table.error("wall", "does not go with inflow and outflow");
+        if (setup.walls.back()) end.buffer.kind = water::Buffer::Kind::wall;
+        setup.open.buffers.push_back(end.buffer);
+        water.profiles.push_back(std::move(end.profile));
         water.surface.emplace_back();
         if (!setup.walls.back() && table.has("surface")) water.surface.back() = table.number("surface", "m");
     }
@@ -108,8 +128,8 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
     const auto spacing = [&](std::size_t b) {
         return std::pow(water.census[b].particle_volume, 1.0 / box.dimension);
     };
-    const auto first = static_cast<std::size_t>(
-        std::find(setup.walls.begin(), setup.walls.end(), std::nullopt) - setup.walls.begin());
+    std::size_t first = 0;  // body of water
+    while (first < tables.size() && setup.open.buffers[first].kind != water::Buffer::Kind::water) ++first;
     if (first < tables.size() && !scene.faulty()) water.spacing = spacing(first);
     for (std::size_t b = 0; b < tables.size() && !scene.faulty(); ++b) {
         constexpr double alike = 0.1;
@@ -119,12 +139,28 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
                                         "allowed: the same within a tenth",
                                         spacing(b), water.spacing));
     }
-    if (water.spacing == 0 && !scene.faulty()) root.error("body", "there is no water: all bodies are walls");
+    if (water.spacing == 0 && !scene.faulty())
+        root.error("body", "there is no water: all bodies are walls, inflows or outflows");
+    if (!scene.faulty()) complete_open_ends(static_cast<std::uint8_t>(first), water);
     if (std::none_of(setup.walls.begin(), setup.walls.end(),
                      [](const auto& wall) { return wall.has_value(); }))
         setup.walls.clear();
     if (std::ranges::none_of(setup.records_force, [](std::uint8_t records) { return records != 0; }))
         setup.records_force.clear();
+}
+
+/// Needs the kernel's radius.
+void refuse_thin_buffers(const Section& root, const WaterScene& water) {
+    const std::vector<water::Buffer>& buffers = water.simulation.open.buffers;
+    const std::vector<Section> tables = root.sections("body");
+    const double radius = water.simulation.settings.radius();
+    for (std::size_t b = 0; b < buffers.size(); ++b)
+        if (buffers[b].is_open() && buffers[b].depth() < radius * (1 - 1e-9))
+            tables[b].error(
+                buffers[b].kind == water::Buffer::Kind::inflow ? "inflow" : "outflow",
+                fmt::format("is {:.4g} m deep along its direction; allowed: as deep as the kernel "
+                            "reaches, {:.4g} m, or deeper",
+                            buffers[b].depth(), radius));
 }
 
 std::vector<WaterGauge> read_gauges(const Section& root, const Box& box) {
@@ -166,6 +202,7 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     setup.settings.smoothing_length = smoothing * water.spacing;
     setup.settings.radius_in_spacings = water::Settings::support() * smoothing;
     if (!scene.faulty()) read_rheology(table.section("rheology"), setup.settings);
+    if (!scene.faulty()) refuse_thin_buffers(root, water);
     water.gauges = read_gauges(root, setup.box);
     water.output = read_output(root);
     const Section run = root.section("run");
@@ -207,6 +244,19 @@ void put_weight(const WaterSetup& setup, double surface, std::uint8_t body, Part
     }
 }
 
+/// Of inflows.
+void put_speeds(const WaterScene& scene, ParticleSet& particles) {
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        const std::size_t b = particles.data(field::body)[i];
+        const water::Buffer& buffer = scene.simulation.open.buffers[b];
+        if (buffer.kind != water::Buffer::Kind::inflow) continue;
+        Point x{};
+        for (int a = 0; a < particles.dimension(); ++a)
+            x[static_cast<std::size_t>(a)] = particles.data(field::position, a)[i];
+        particles.data(field::velocity, buffer.axis)[i] = buffer.sign * scene.profiles[b].speed(x);
+    }
+}
+
 }  // namespace
 
 ParticleSet make_water(const Communicator& comm, const WaterScene& scene) {
@@ -216,6 +266,7 @@ ParticleSet make_water(const Communicator& comm, const WaterScene& scene) {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
         if (scene.surface[b])
             put_weight(scene.simulation, *scene.surface[b], static_cast<std::uint8_t>(b), particles);
+    if (!scene.simulation.open.buffers.empty()) put_speeds(scene, particles);
     return particles;
 }
 

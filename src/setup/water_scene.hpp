@@ -6,6 +6,7 @@
 #include "comm/communicator.hpp"
 #include "io/scene.hpp"
 #include "src/setup/bodies.hpp"
+#include "src/setup/buffer_reader.hpp"
 #include "src/setup/scene_setup.hpp"
 #include "src/water/gauges.hpp"
 #include "src/water_simulation.hpp"
@@ -21,6 +22,7 @@ struct WaterScene {
     std::vector<std::optional<double>> surface;  ///< of a body at rest under it: height against gravity [m]
     double spacing = 0;                          ///< of the water [m]
     double greatest_speed = 0;                   ///< that the scene expects [m/s]; 0: not said
+    std::vector<InflowProfile> profiles{};       ///< one a body; of those that are inflows
     std::vector<WaterGauge> gauges{};
     OutputPlan output;
     std::uint64_t seed = 0;

@@ -32,13 +32,12 @@ class Sampling {
 
     std::vector<Sample> near(const WaterSimulation& simulation, std::span<const WaterGauge> gauges) const {
         const ParticleSet& particles = simulation.particles();
-        const auto& walls = simulation.setup().walls;
         const double* solid = particles.has(coupling_field::solid_fraction)
                                   ? particles.data(coupling_field::solid_fraction)
                                   : nullptr;
         std::vector<Sample> found;
         for (std::size_t i = 0; i < particles.size(); ++i) {
-            if (!walls.empty() && walls[particles.data(field::body)[i]]) continue;
+            if (!simulation.is_water(particles.data(field::body)[i])) continue;
             for (std::size_t k = 0; k < gauges.size(); ++k) {
                 const Point offset = from_gauge(particles, i, gauges[k].place);
                 if (!is_near(offset)) continue;

@@ -7,7 +7,8 @@
 
 namespace talus {
 
-/// What the diagnostics say beyond totals: forces on walls and gauges, as far as a scene names them.
+/// What the diagnostics say beyond totals: what came and went, forces on walls and gauges, as far as a scene
+/// names them.
 class WaterRecord {
   public:
     /// `names`: of the bodies.
@@ -22,6 +23,7 @@ class WaterRecord {
     std::string axes_, turns_;           ///< along which vectors, and about which torques are written
     bool has_level_;                     ///< there is a gravity that water bears
     std::vector<std::string> recorded_;  ///< walls
+    OpenPlan open_;
     std::vector<WaterGauge> gauges_;
 };
 

@@ -54,6 +54,25 @@ class Water(Case):
         self.check("[run]", '[[gauge]]\nname = "a"\nplace = [0, 0]\n[[gauge]]\nname = "a"\nplace = [0, 0]\n[run]',
                    r"gauge\[1\]\.name = .*another of the name 'a'")
 
+    def test_open_ends(self):
+        outlet = '[[body]]\nname = "outlet"\nshape = "box"\nlower = [0.4, 0]\nupper = [0.48, 0.2]\nlattice = "cubic"\nsurface = 0.2\n'
+        thin = outlet.replace("0.48", "0.44")
+        self.check("[run]", thin + 'outflow = { direction = "+x" }\n[run]', r"body\[2\]\.outflow.* 0\.04 m deep .*0\.08 m")
+        self.check("[run]", outlet + 'inflow = { direction = "-x", places = [0.1, 0], speeds = [1, 1] }\n[run]',
+                   r"body\[2\]\.inflow\.places.*rising")
+        behind = outlet.replace("[0.4, 0]", "[0.5, 0]").replace("0.48", "0.58")
+        done = talus("run", self.scene(SCENE.replace("[run]", behind + 'outflow = { direction = "+x" }\n[run]')), "--out", self.out,
+                     "--steps", 1)
+        self.assertRegex(done.stdout + done.stderr, r"no water at the face of 'outlet'")
+
+    def test_an_inflow_into_a_full_tank(self):
+        inlet = '[[body]]\nname = "inlet"\nshape = "box"\nlower = [-0.08, 0]\nupper = [0, 0.2]\nlattice = "cubic"\n' \
+                'inflow = { direction = "+x", speed = 2 }\n'
+        wall = '[[body]]\nname = "{}"\nshape = "box"\nlower = [{}]\nupper = [{}]\nlattice = "cubic"\nwall = "free_slip"\n'
+        full = inlet + wall.format("right", "0.4, 0", "0.48, 0.2") + wall.format("lid", "-0.08, 0.2", "0.48, 0.28")
+        scene = self.scene(SCENE.replace("[run]", full + "[run]").replace("end_time = 0.02", "end_time = 1"))
+        self.assert_fails(talus("run", scene, "--out", self.out), 1, r"'inlet' pushes water into a region that is full")
+
     def test_an_unknown_key(self):
         self.check("artificial_viscosity", "artificial_viscocity", r"artificial_viscocity")
 

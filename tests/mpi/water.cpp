@@ -80,6 +80,51 @@ end_time = 1
 rebalance_interval = 2
 )";
 
+/// A channel that water enters with a profile of speeds, on a floor, and leaves.
+constexpr const char* channel = R"(dimension = 2
+[water]
+greatest_speed = 4
+gravity = [0, -9.81]
+artificial_viscosity = 0.05
+shifting = 1
+[[body]]
+name = "floor"
+shape = "box"
+lower = [-0.08, -0.08]
+upper = [0.58, 0]
+lattice = "cubic"
+spacing = 0.02
+wall = "no_slip"
+[[body]]
+name = "inlet"
+shape = "box"
+lower = [-0.08, 0]
+upper = [0, 0.2]
+lattice = "cubic"
+surface = 0.2
+inflow = { direction = "+x", places = [0, 0.2], speeds = [1, 4] }
+[[body]]
+name = "water"
+shape = "box"
+lower = [0, 0]
+upper = [0.5, 0.2]
+lattice = "cubic"
+velocity = [3, 0]
+surface = 0.2
+[[body]]
+name = "outlet"
+shape = "box"
+lower = [0.5, 0]
+upper = [0.58, 0.2]
+lattice = "cubic"
+velocity = [3, 0]
+surface = 0.2
+outflow = { direction = "+x" }
+[run]
+end_time = 1
+rebalance_interval = 2
+)";
+
 /// The first as mud.
 const std::string mud = [] {
     std::string text = plane;
@@ -155,11 +200,11 @@ TEST_P(WaterSameBits, AfterInterruption) {
 }
 
 std::string name_of(const testing::TestParamInfo<const char*>& scene) {
-    constexpr std::array names{"plane", "space", "mud"};
+    constexpr std::array names{"plane", "space", "channel", "mud"};
     return names[scene.index];
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space, mud.c_str()), name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space, channel, mud.c_str()), name_of);
 
 /// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that
 /// has it.

@@ -101,6 +101,22 @@ class StillWater(unittest.TestCase):
         self.assertLess(abs(first["p"] - exact).max(), 1e-3 * exact.max())
 
 
+class OpenEnds(unittest.TestCase):
+    def test_uniform_flow(self):
+        """A channel that slips, through which water flows with 0.36 of the speed of its waves: the level up and
+        down the stream is right to 1 %, what still water is right to (StillWater), and the speed in the mean of time. What is there is
+        what was there, came and went, to the rounding of sums; as much came as went, to a layer."""
+        run = Run("open_channel", "run.end_time=3", "output.snapshots=0")
+        h = run.history
+        for gauge in ("up", "down"):
+            self.assertLess(abs(h[f"level_{gauge}"] / 0.2 - 1).max(), 0.01)
+            self.assertAlmostEqual(h[f"velocity_{gauge}_x"].mean() / 0.5, 1, delta=0.01)
+        change = h["inflow_mass_inlet"] - h["returned_mass_inlet"] - h["outflow_mass_outlet"]
+        self.assertLess(abs(h["mass"] - h["mass"][0] - change).max(), 1e-12 * h["mass"][0])
+        self.assertGreater(h["inflow_mass_inlet"][-1], 1.4 * h["mass"][0])
+        self.assertLess(abs(change).max(), 1.01 * h["mass"][0] * 0.01)
+
+
 class Viscous(unittest.TestCase):
     def test_poiseuille(self):
         """J. P. Morris et al. (1997), eq. 33: from rest; error of second order in the spacing."""
