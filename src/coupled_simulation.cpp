@@ -81,6 +81,12 @@ void CoupledSimulation::save_numbers(std::map<std::string, double>& numbers) con
     numbers["grain_steps"] = static_cast<double>(grains_.step_count());
 }
 
+void CoupledSimulation::reset_counters() {
+    water_.reset_counters();
+    grains_.reset_counters();
+    pairs_ = 0;
+}
+
 bool CoupledSimulation::holds_some_grains() const {
     const auto& held = setup_.grains.held;
     return std::ranges::any_of(held, [](std::uint8_t h) { return h != 0; }) &&
@@ -108,10 +114,12 @@ void CoupledSimulation::choose_time_step() {
 void CoupledSimulation::step() {
     last_step_ = water_.time_step();
     grains_.follow(water_.decomposition().partition());
+    water_.phases().enter(Phase::grains);
     for (int k = substeps(); k > 0; --k) grains_.step();
     water_.step();
     choose_time_step();
     exchange();
+    water_.phases().stop();
 }
 
 void CoupledSimulation::refresh_water(std::initializer_list<const FieldInfo*> fields) {
@@ -167,6 +175,7 @@ void CoupledSimulation::fill_immersed() {
 
 /// Puts the grains where the water around them is, and finds what share of space they fill.
 void CoupledSimulation::immerse() {
+    water_.phases().enter(Phase::exchange);
     const WaterSimulation::Access water = water_.access();
     const double *mass = water.particles.data(field::mass), *density = water.particles.data(field::density);
     const std::uint8_t* body = water.particles.data(field::body);
@@ -188,13 +197,13 @@ void CoupledSimulation::immerse() {
     immersed_cells_.follow(water.decomposition.partition());
     immersed_cells_.arrange(immersed_, water.grid);
     refresh_immersed({&field::position, &field::radius});
-    coupling::sum_weights(mixture(), setup_.coupling.spreading);
+    pairs_ += coupling::sum_weights(mixture(), setup_.coupling.spreading);
     refresh_immersed({&of::kernel_sum});
     const CouplingSetup& how = setup_.coupling;
-    coupling::spread_volume(mixture(), how.spreading, how.fraction, of::solid_fraction);
+    pairs_ += coupling::spread_volume(mixture(), how.spreading, how.fraction, of::solid_fraction);
     if (&shared_fraction() != &of::solid_fraction)
-        coupling::spread_volume(mixture(), how.spreading, coupling::VolumeFraction::normalised,
-                                of::shared_fraction);
+        pairs_ += coupling::spread_volume(mixture(), how.spreading, coupling::VolumeFraction::normalised,
+                                          of::shared_fraction);
     if (!starting_) return;
     const double* solid = water.particles.data(of::solid_fraction);
     for (std::size_t a = 0; a < water.particles.size(); ++a) {
@@ -207,6 +216,7 @@ void CoupledSimulation::immerse() {
 
 /// Forces between water and grains until the next exchange.
 void CoupledSimulation::exchange() {
+    water_.phases().enter(Phase::exchange);
     const WaterSimulation::Access water = water_.access();
     const CouplingSetup& how = setup_.coupling;
     for (int axis = 0; axis < 3; ++axis) {
@@ -220,7 +230,8 @@ void CoupledSimulation::exchange() {
     refresh_water({&field::mass, &field::predicted_velocity, &of::solid_fraction, &of::shared_fraction,
                    &of::pair_acceleration, &of::grain_acceleration});
     std::vector<coupling::Gathered> around(immersed_.size());
-    coupling::gather(mixture(), how.spreading, shared_fraction(), how.laws.needs_vorticity(), around);
+    pairs_ +=
+        coupling::gather(mixture(), how.spreading, shared_fraction(), how.laws.needs_vorticity(), around);
     const dem::Vectors velocity(immersed_, field::velocity), spin(immersed_, field::angular_velocity),
         others(immersed_, field::acceleration), force(immersed_, of::exchanged_force);
     for (std::size_t i = 0; i < immersed_.size(); ++i) {
@@ -236,7 +247,7 @@ void CoupledSimulation::exchange() {
     }
     if (how.laws.feedback) {
         refresh_immersed({&of::exchanged_force});
-        coupling::spread_force(mixture(), how.spreading);
+        pairs_ += coupling::spread_force(mixture(), how.spreading);
     }
     return_forces();
     weigh_work();

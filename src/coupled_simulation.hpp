@@ -69,6 +69,9 @@ class CoupledSimulation {
     const GrainSimulation& grains() const { return grains_; }
     GrainSimulation& grains() { return grains_; }
     const CoupledSetup& setup() const { return setup_; }
+    /// Pairs of grains and water that this rank weighed since the counters were reset.
+    std::uint64_t pairs() const { return pairs_; }
+    void reset_counters();
     /// Whether some grains are held and others move.
     bool holds_some_grains() const;
     /// Steps of the grains in the next one of the water.
@@ -97,6 +100,7 @@ class CoupledSimulation {
     SparseExchange exchange_;
     double last_step_ = 0;  ///< time over which grains have moved since the last exchange [s]
     bool starting_ = false;
+    std::uint64_t pairs_ = 0;
 };
 
 }  // namespace talus

@@ -17,14 +17,16 @@ enum class Phase : unsigned char {
     pressure,
     material,
     motion,
+    grains,    ///< in water: their steps
+    exchange,  ///< between water and grains
     wait,
     output,
     count
 };
 
 inline constexpr std::array<std::string_view, static_cast<std::size_t>(Phase::count)> phase_names = {
-    "decompose", "halo",     "density", "gradients",       "forces", "gravity",
-    "pressure",  "material", "motion",  "wait for others", "output"};
+    "decompose", "halo",   "density", "gradients", "forces",          "gravity", "pressure",
+    "material",  "motion", "grains",  "exchange",  "wait for others", "output"};
 
 /// Wall time spent in each phase on this rank.
 class Phases {

@@ -17,6 +17,10 @@ def run_program(arguments, program=RUNS.parent / "build" / "release" / "talus"):
                           env=ENVIRONMENT)
 
 
+def performance_of(out):
+    return json.loads((Path(out) / "performance.json").read_text())
+
+
 def run_scene(program, folder, scene, settings=(), until=None):
     """Runs runs/`scene` with settings "key=value" on one rank. Returns a row: work (pairs, the same on any machine), particles,
     steps, seconds of the steps, and `errors` {name of the reference: relative error}; a run that fails says so in `failed`."""
@@ -29,7 +33,7 @@ def run_scene(program, folder, scene, settings=(), until=None):
     done = run_program(line, program)
     if done.returncode != 0:
         return {"failed": (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[0]}
-    performance = json.loads((out / "performance.json").read_text())
+    performance = performance_of(out)
     compared = run_record.compare(out, run_record.read_state(out)[0])
     return {"pairs": performance["pairs"], "particles": performance["particles"], "steps": performance["steps"],
             "seconds": performance["seconds"],

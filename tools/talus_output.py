@@ -20,6 +20,7 @@ DATASETS = {
     "smoothing_length": ("SmoothingLengths", "SmoothingLength"),
     "mass": ("Masses", "Mass"),
     "radius": ("Radius", "Radii"),
+    "solid_fraction": ("SolidFraction",),
     "angular_velocity": ("AngularVelocity", "AngularVelocities"),
     "id": ("ParticleIDs",),
     "body": ("BodyIDs",),

@@ -68,6 +68,7 @@ dem::Vector3<> place_of(const std::array<const double*, 3>& position, std::size_
 struct Reached {
     std::vector<double> r2, weight;
     std::vector<std::uint32_t> place;
+    std::uint64_t pairs = 0;  ///< weighed so far
 
     /// Makes room for all places of a cell.
     void reserve(std::size_t count) {
@@ -99,6 +100,7 @@ void for_each_weight(const Places& places, const dem::Vector3<>& centre, double 
     }
     for (std::size_t n = 0; n < count; ++n) found[n] = weight(r2[n]);
     for (std::size_t n = 0; n < count; ++n) visit(place[n], found[n]);
+    reached.pairs += count;
 }
 
 /// Calls with_weight(w) with the weight function that is asked for.
@@ -131,9 +133,11 @@ void for_each_own(const ParticleSet& set, const CellTable& cells, const Particle
     });
 }
 
-/// For each own grain: begin(i), pair(a, weight) for each image and fluid particle in reach, end(i).
+/// For each own grain: begin(i), pair(a, weight) for each image and fluid particle in reach, end(i). Returns
+/// the pairs.
 template <class Begin, class Pair, class End>
-void for_each_grain(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair, End&& end) {
+std::uint64_t for_each_grain(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair,
+                             End&& end) {
     const double* volume = m.fluid.data(of::quadrature_volume);
     Places near;
     Reached reached;
@@ -152,12 +156,14 @@ void for_each_grain(const Mixture& m, const Spreading& spreading, Begin&& begin,
                          end(i);
                      });
     });
+    return reached.pairs;
 }
 
 /// For each own fluid particle: begin(a), pair(i, weight) for each grain and image in reach if a counts,
-/// end(a).
+/// end(a). Returns the pairs.
 template <class Begin, class Pair, class End>
-void for_each_fluid(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair, End&& end) {
+std::uint64_t for_each_fluid(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair,
+                             End&& end) {
     const double* volume = m.fluid.data(of::quadrature_volume);
     Places near;
     Reached reached;
@@ -176,21 +182,22 @@ void for_each_fluid(const Mixture& m, const Spreading& spreading, Begin&& begin,
                          end(a);
                      });
     });
+    return reached.pairs;
 }
 
 }  // namespace
 
-void sum_weights(const Mixture& mixture, const Spreading& spreading) {
+std::uint64_t sum_weights(const Mixture& mixture, const Spreading& spreading) {
     const double* volume = mixture.fluid.data(of::quadrature_volume);
     double *sums = mixture.grains.data(of::kernel_sum), sum = 0;
-    for_each_grain(
+    return for_each_grain(
         mixture, spreading, [&](std::uint32_t) { sum = 0; },
         [&](std::uint32_t a, double weight) { sum += volume[a] * weight; },
         [&](std::uint32_t i) { sums[i] = sum; });
 }
 
-void spread_volume(const Mixture& mixture, const Spreading& spreading, VolumeFraction kind,
-                   const Field<double>& fraction) {
+std::uint64_t spread_volume(const Mixture& mixture, const Spreading& spreading, VolumeFraction kind,
+                            const Field<double>& fraction) {
     const double *radius = mixture.grains.data(field::radius), *sums = mixture.grains.data(of::kernel_sum);
     Spreading used = spreading;
     if (kind == VolumeFraction::raw) used.planes.clear();
@@ -202,7 +209,7 @@ void spread_volume(const Mixture& mixture, const Spreading& spreading, VolumeFra
                                                 : 0.0;
     }
     double *to = mixture.fluid.data(fraction), sum = 0;
-    for_each_fluid(
+    return for_each_fluid(
         mixture, used, [&](std::uint32_t) { sum = 0; },
         [&](std::uint32_t i, double weight) { sum += spread[i] * weight; },
         [&](std::uint32_t a) { to[a] = sum; });
@@ -238,8 +245,8 @@ Eigen::Vector3d eigen(const dem::Vector3<>& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
-void gather(const Mixture& mixture, const Spreading& spreading, const Field<double>& shared_fraction,
-            bool vorticity, std::span<Gathered> gathered) {
+std::uint64_t gather(const Mixture& mixture, const Spreading& spreading, const Field<double>& shared_fraction,
+                     bool vorticity, std::span<Gathered> gathered) {
     const ParticleSet &fluid = std::as_const(mixture.fluid), &grains = std::as_const(mixture.grains);
     const double *volume = fluid.data(of::quadrature_volume), *mass = fluid.data(field::mass);
     const double *solid = fluid.data(of::solid_fraction), *shared = fluid.data(shared_fraction);
@@ -250,7 +257,7 @@ void gather(const Mixture& mixture, const Spreading& spreading, const Field<doub
     Gathered now{};
     LinearFit fit;
     std::uint32_t grain = 0;
-    for_each_grain(
+    return for_each_grain(
         mixture, spreading,
         [&](std::uint32_t i) {
             now = {};
@@ -281,14 +288,14 @@ void gather(const Mixture& mixture, const Spreading& spreading, const Field<doub
         });
 }
 
-void spread_force(const Mixture& mixture, const Spreading& spreading) {
+std::uint64_t spread_force(const Mixture& mixture, const Spreading& spreading) {
     const ParticleSet& grains = std::as_const(mixture.grains);
     const double* sums = grains.data(of::kernel_sum);
     const dem::Vectors force(grains, of::exchanged_force);
     const double *volume = mixture.fluid.data(of::quadrature_volume), *mass = mixture.fluid.data(field::mass);
     const dem::Vectors to(mixture.fluid, of::grain_acceleration);
     dem::Vector3<> sum;
-    for_each_fluid(
+    return for_each_fluid(
         mixture, spreading, [&](std::uint32_t) { sum = {}; },
         [&](std::uint32_t i, double weight) { sum += (weight / sums[i]) * force[i]; },
         [&](std::uint32_t a) { to.put(a, -(volume[a] / mass[a]) * sum); });

@@ -41,8 +41,9 @@ struct Mixture {
     int reach;  ///< in cells, of Spreading::radius
 };
 
-/// kernel_sum of the own grains. Reads quadrature_volume and position of the fluid.
-void sum_weights(const Mixture& mixture, const Spreading& spreading);
+/// kernel_sum of the own grains. Reads quadrature_volume and position of the fluid. This and what follows
+/// return how many pairs of a grain or an image and a fluid particle they weighed.
+std::uint64_t sum_weights(const Mixture& mixture, const Spreading& spreading);
 
 /// Which solid fraction is meant: `normalised`: sum_i V_i w_ia/S_i, whose integral is the volume of the
 /// grains on any particles. `raw`: sum_i V_i w_ia without images, whose integral is that in the limit of fine
@@ -51,8 +52,8 @@ enum class VolumeFraction : std::uint8_t { normalised, raw };
 
 /// The solid fraction of the own fluid particles, into `fraction`. Reads position, radius, kernel_sum of
 /// grains.
-void spread_volume(const Mixture& mixture, const Spreading& spreading, VolumeFraction kind,
-                   const Field<double>& fraction);
+std::uint64_t spread_volume(const Mixture& mixture, const Spreading& spreading, VolumeFraction kind,
+                            const Field<double>& fraction);
 
 /// What the fluid is around a grain, averages with its shares.
 struct Gathered {
@@ -71,11 +72,11 @@ struct Gathered {
 /// For each own grain; zeros where no fluid is. Reads quadrature_volume, mass, predicted_velocity,
 /// solid_fraction, `shared_fraction` (of the normalised kind), pair_acceleration and grain_acceleration of
 /// the fluid. The vorticity, of the velocities' best linear fit, only if it is asked for.
-void gather(const Mixture& mixture, const Spreading& spreading, const Field<double>& shared_fraction,
-            bool vorticity, std::span<Gathered> gathered);
+std::uint64_t gather(const Mixture& mixture, const Spreading& spreading, const Field<double>& shared_fraction,
+                     bool vorticity, std::span<Gathered> gathered);
 
 /// grain_acceleration of the own fluid particles: what balances exchanged_force. Reads position, kernel_sum
 /// and exchanged_force of the grains.
-void spread_force(const Mixture& mixture, const Spreading& spreading);
+std::uint64_t spread_force(const Mixture& mixture, const Spreading& spreading);
 
 }  // namespace talus::coupling

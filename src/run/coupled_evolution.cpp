@@ -93,11 +93,6 @@ void CoupledEvolution::resume(const RunState& state) {
     read_contacts_.reset();
 }
 
-void CoupledEvolution::reset_counters() {
-    simulation_->water().reset_counters();
-    simulation_->grains().reset_counters();
-}
-
 void CoupledEvolution::describe(RunState& state) const {
     state.materials = bodies();
     state.walls = names_of_walls(setup_.grains.simulation.walls);
@@ -189,6 +184,11 @@ std::string CoupledEvolution::summary() const {
         "in the next of the water",
         simulation_->grains().total_grains(), c.imbalance, c.least_fluid_fraction, c.clipped,
         c.grain_volume > 0 ? c.spread_volume / c.grain_volume : 0.0, simulation_->substeps());
+}
+
+std::string CoupledEvolution::performance() const {
+    return fmt::format("\"grains\": {}, \"exchange_pairs\": {}, ", simulation_->grains().total_grains(),
+                       comm_.all_sum(simulation_->pairs()));
 }
 
 }  // namespace talus

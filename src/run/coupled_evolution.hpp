@@ -32,8 +32,8 @@ class CoupledEvolution : public Evolution {
     const ParticleSet& particles() const override { return simulation_->water().particles(); }
     const Decomposition& decomposition() const override { return simulation_->water().decomposition(); }
     Phases& phases() override { return simulation_->water().phases(); }
-    std::uint64_t pairs() const override { return simulation_->water().pairs(); }
-    void reset_counters() override;
+    std::uint64_t pairs() const override { return simulation_->water().pairs() + simulation_->pairs(); }
+    void reset_counters() override { simulation_->reset_counters(); }
     double work() const override { return simulation_->water().work(); }
     void describe(RunState& state) const override;
     void save(const WriteSets& write) override;
@@ -42,7 +42,7 @@ class CoupledEvolution : public Evolution {
     std::vector<CsvColumn> diagnostics_columns() const override;
     Diagnostics diagnostics() override;
     std::string summary() const override;
-    std::string performance() const override { return {}; }
+    std::string performance() const override;
 
     const CoupledScene& setup() const { return setup_; }
     const CoupledSimulation& simulation() const { return *simulation_; }
