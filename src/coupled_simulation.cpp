@@ -244,6 +244,8 @@ void CoupledSimulation::exchange() {
                                           .other_acceleration = others[i]};
         const double wet = how.spreading.wet_share(immersed_.data(of::kernel_sum)[i]);
         force.put(i, coupling::mean_force(how.laws, grain, around[i], wet, water_.time_step()));
+        if (how.laws.torque)
+            spin.put(i, coupling::relaxed_spin(how.laws, grain, around[i], wet, water_.time_step()));
     }
     if (how.laws.feedback) {
         refresh_immersed({&of::exchanged_force});
@@ -253,23 +255,22 @@ void CoupledSimulation::exchange() {
     weigh_work();
 }
 
-/// Each force to the rank that moves its grain.
-void CoupledSimulation::return_forces() {
+/// A field of the immersed grains, on the ranks that move them and in their order there.
+std::vector<dem::Vector3<>> CoupledSimulation::at_home(const Field<double>& field) {
     struct Returned {
         std::uint32_t place, unused;
-        dem::Vector3<> acceleration;
+        dem::Vector3<> value;
     };
-    const dem::Vectors force(std::as_const(immersed_), of::exchanged_force);
-    std::vector<dem::Vector3<>> accelerations(grains_.grains().size());
+    const dem::Vectors values(std::as_const(immersed_), field);
+    std::vector<dem::Vector3<>> home(grains_.grains().size());
     std::map<int, std::vector<Returned>> leaving;
     for (std::size_t i = 0; i < immersed_.size(); ++i) {
-        const Returned found{immersed_.data(of::home_place)[i], 0,
-                             (1 / immersed_.data(field::mass)[i]) * force[i]};
+        const std::uint32_t place = immersed_.data(of::home_place)[i];
         const int rank = static_cast<int>(immersed_.data(of::home_rank)[i]);
         if (rank == comm_.rank())
-            accelerations[found.place] = found.acceleration;
+            home[place] = values[i];
         else
-            leaving[rank].push_back(found);
+            leaving[rank].push_back({place, 0, values[i]});
     }
     std::vector<Parcel> outgoing;
     for (const auto& [rank, records] : leaving) {
@@ -280,9 +281,18 @@ void CoupledSimulation::return_forces() {
     for (const Parcel& parcel : exchange_(std::move(outgoing))) {
         std::vector<Returned> records(parcel.bytes.size() / sizeof(Returned));
         std::memcpy(records.data(), parcel.bytes.data(), parcel.bytes.size());
-        for (const Returned& found : records) accelerations[found.place] = found.acceleration;
+        for (const Returned& found : records) home[found.place] = found.value;
     }
+    return home;
+}
+
+/// To the ranks that move the grains.
+void CoupledSimulation::return_forces() {
+    std::vector<dem::Vector3<>> accelerations = at_home(of::exchanged_force);
+    const auto mass = grains_.grains().own(field::mass);
+    for (std::size_t i = 0; i < mass.size(); ++i) accelerations[i] = (1 / mass[i]) * accelerations[i];
     grains_.set_fluid_accelerations(accelerations);
+    if (setup_.coupling.laws.torque) grains_.set_spins(at_home(field::angular_velocity));
 }
 
 /// Grains count in the cells of the water that they are in, in pairs of particles.

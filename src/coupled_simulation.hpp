@@ -84,6 +84,7 @@ class CoupledSimulation {
     void choose_time_step();
     void exchange();
     void fill_immersed();
+    std::vector<dem::Vector3<>> at_home(const Field<double>& field);
     void return_forces();
     void weigh_work();
     void refresh_water(std::initializer_list<const FieldInfo*> fields);

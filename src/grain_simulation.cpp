@@ -127,6 +127,13 @@ void GrainSimulation::set_fluid_accelerations(std::span<const dem::Vector3<>> ac
     }
 }
 
+void GrainSimulation::set_spins(std::span<const dem::Vector3<>> spins) {
+    const std::uint8_t* body = grains_.data(field::body);
+    const dem::Vectors spin(grains_, field::angular_velocity);
+    for (std::size_t i = 0; i < grains_.size(); ++i)
+        if (!setup_.held[body[i]]) spin.put(i, spins[i]);
+}
+
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
     const auto fields_of = []<class Table>(const Table&) {
         std::vector<const FieldInfo*> fields;

@@ -104,6 +104,9 @@ class GrainSimulation {
     /// velocity of now becomes earlier_velocity.
     void set_fluid_accelerations(std::span<const dem::Vector3<>> accelerations);
 
+    /// Angular velocities of the own grains that are not held, in order [rad/s].
+    void set_spins(std::span<const dem::Vector3<>> spins);
+
     double time() const { return time_; }                  ///< [s]
     double time_step() const { return setup_.time_step; }  ///< [s]
     std::uint64_t step_count() const { return step_; }

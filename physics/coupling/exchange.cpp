@@ -34,7 +34,7 @@ dem::Vector3<> lasting_force(const ExchangeLaws& laws, const MovingGrain& grain,
     const double volume = wet_share * volume_of(grain);
     dem::Vector3<> force = laws.model == PressureModel::a ? volume * fluid.force_density
                                                           : -(volume * around.density) * laws.gravity;
-    if (!laws.needs_vorticity()) return force;
+    if (!laws.saffman && !laws.magnus) return force;
     const ShearedSphere sheared{.density = around.density,
                                 .viscosity = around.viscosity,
                                 .diameter = 2 * grain.radius,
@@ -75,6 +75,14 @@ dem::Vector3<> mean_force(const ExchangeLaws& laws, const MovingGrain& grain, co
     if (grain.held) return lasting + carried * (fluid.acceleration + fluid.reaction) + (1 / time_step) * drag;
     const dem::Vector3<> gained = time_step * others + of_grain * drag;
     return (grain.mass / time_step) * gained - grain.mass * grain.other_acceleration;
+}
+
+dem::Vector3<> relaxed_spin(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid,
+                            double wet_share, double time_step) {
+    const double diameter = 2 * grain.radius, inertia = 0.4 * grain.mass * grain.radius * grain.radius;
+    const double rate =
+        wet_share * std::numbers::pi * laws.viscosity * diameter * diameter * diameter / inertia;
+    return grain.spin - std::expm1(-rate * time_step) * (0.5 * fluid.vorticity - grain.spin);
 }
 
 }  // namespace talus::coupling

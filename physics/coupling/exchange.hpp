@@ -12,10 +12,11 @@ struct ExchangeLaws {
     dem::Vector3<> gravity{};
     double virtual_mass = 0;  ///< coefficient, 1/2 for a sphere; 0: none
     bool saffman = false, magnus = false;
+    bool torque = false;                ///< whether the fluid slows the spin of grains
     bool feedback = true;               ///< whether the fluid feels the grains
     double least_fluid_fraction = 0.2;  ///< smaller ones are taken for this
 
-    bool needs_vorticity() const { return saffman || magnus; }
+    bool needs_vorticity() const { return saffman || magnus || torque; }
 };
 
 /// A grain as the exchange sees it.
@@ -37,6 +38,12 @@ struct MovingGrain {
 /// energy never grows, whatever the time step (docs/decisions/023).
 dem::Vector3<> mean_force(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid,
                           double wet_share, double time_step);
+
+/// Angular velocity of a grain after the time step to come under the torque of the fluid alone,
+/// -pi mu d^3 (omega - w/2) with the vorticity w, solved exactly: S. I. Rubinow, J. B. Keller, J. Fluid Mech.
+/// 11 (1961) 447. The fluid does not feel it.
+dem::Vector3<> relaxed_spin(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid,
+                            double wet_share, double time_step);
 
 /// The drag coefficient that mean_force() takes [N s/m].
 double drag_of(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid, double wet_share);

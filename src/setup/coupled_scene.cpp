@@ -70,6 +70,7 @@ void read_coupling(const Section& root, CoupledScene& scene) {
     const std::string lift = table.choice("lift", {"none", "saffman_mei", "magnus", "both"}, "none");
     how.laws.saffman = lift == "saffman_mei" || lift == "both";
     how.laws.magnus = lift == "magnus" || lift == "both";
+    how.laws.torque = table.flag("torque", false);
     how.laws.feedback = table.flag("feedback", true);
     how.laws.least_fluid_fraction = table.number("least_fluid_fraction", "1", 0.2, {0.05, 1});
     how.laws.gravity = {water.settings.gravity[0], water.settings.gravity[1], water.settings.gravity[2]};

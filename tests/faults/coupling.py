@@ -88,6 +88,11 @@ class Coupling(Case):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertRegex(done.stdout, r"note: grains of up to 0\.0018 m across .*resolved")
 
+    def test_a_check_warns_of_water_that_drags_nothing(self):
+        done = talus("check", self.scene(SCENE.replace("viscosity = 0.001", "viscosity = 0")), ranks=0)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"note: the water has no viscosity: it does not drag the grains")
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)

@@ -187,6 +187,30 @@ TEST(Exchange, VirtualMassOfALightSphere) {
     EXPECT_NEAR(force.z / mass - gravity, (displaced - mass) * gravity / (mass + 0.5 * displaced), 1e-10);
 }
 
+// A ball that spins in a fluid that turns: omega - w/2 falls off as exp(-60 mu t/(rho d^2)), the torque over
+// the ball's moment of inertia, in steps of any length.
+TEST(Exchange, SpinFollowsTheFluid) {
+    constexpr double radius = 5e-4, viscosity = 1e-3;
+    const Gathered around{.velocity = {},
+                          .vorticity = {0, 0, 8},
+                          .force_density = {},
+                          .acceleration = {},
+                          .reaction = {},
+                          .solid_fraction = 0,
+                          .density = 1000,
+                          .crowding = 0};
+    const double mass = grain_density * volume(radius), time = 0.05;
+    const double left = std::exp(-60 * viscosity * time / (grain_density * 4 * radius * radius));
+    for (const int steps : {1, 10, 1000}) {
+        MovingGrain grain{radius, mass, false, {}, {100, 0, -20}, {}};
+        for (int k = 0; k < steps; ++k)
+            grain.spin =
+                relaxed_spin({.viscosity = viscosity, .torque = true}, grain, around, 1, time / steps);
+        EXPECT_NEAR(grain.spin.x, 100 * left, 1e-10);
+        EXPECT_NEAR(grain.spin.z, 4 - 24 * left, 1e-10);
+    }
+}
+
 // The vorticity of a fluid that turns, found at grains anywhere in it.
 TEST(Exchange, VorticityOfATurningFluid) {
     Crowd sample(50);

@@ -18,7 +18,7 @@ BALL = math.pi / 6 * DIAMETER**3
 FRACTIONS = {"normalised kernel": [], "kernel": ["coupling.volume_fraction=kernel"]}
 # Of the water: spacings in diameters of the bead; particles across the boxes, which they fill.
 SPACINGS = {"settling": (6.4, 5.333333333333333, 4.0, 3.2, 2.0), "packed bed": (4, 5, 6, 8), "porous block": (5, 6, 8, 10)}
-QUICK = {"settling": (6.4,), "packed bed": (4,), "porous block": ()}
+QUICK = {"settling": (6.4,), "packed bed": (), "porous block": ()}
 SETTLED, WATER_STEP = 0.12, 0.25e-3  # of hindered settling: time, a step that the water can take [s]
 SUBSTEPS = (1, 3, 10)
 
@@ -129,7 +129,8 @@ def draw(rows, plt):
             line = [row for row in rows if row["scene"] == scene and row["method"] == method]
             good = [row for row in line if "error" in row]
             work = (lambda row: SETTLED / WATER_STEP * row["knob"]) if scene == "hindered settling" else (lambda row: row["pairs"])
-            panel.loglog([work(row) for row in good], [abs(row["error"]) for row in good], "o-", color=colour, label=method)
+            panel.loglog([work(row) for row in good], [abs(row["error"]) for row in good], "o-" if method != "kernel" else "s--",
+                         color=colour, label=method)
             for row in line:
                 if "failed" in row:
                     panel.plot(work(good[-1]) if good else 1, 1, "x", color=colour)
@@ -137,6 +138,9 @@ def draw(rows, plt):
                 panel.annotate(labels[scene](row["knob"]), (work(row), abs(row["error"])), fontsize=7, xytext=(4, 4),
                                textcoords="offset points")
         panel.set(title=scene, xlabel="steps of the grains" if scene == "hindered settling" else "pairs weighed, of water and with grains")
-        panel.legend(fontsize=7)
+        panel.legend(fontsize=7, loc="lower left")
+    panels[1].set_ylim(1e-15, 1e-3)
+    panels[2].set_ylim(1e-2, 0.3)
+    panels[3].set_ylim(1e-5, 1e-2)
     panels[0].set_ylabel("relative error of the velocity")
     return figure
