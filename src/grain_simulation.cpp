@@ -249,7 +249,20 @@ std::vector<std::string> GrainSimulation::take_notes() {
 /// Forces and torques of all contacts, those of own grains while copies are on their way.
 void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::motion);
-    rows_.predict(grains_, time_step);
+    std::size_t ready = 0;  // own grains
+    const auto make_ready = [&](std::size_t end) {
+        constexpr std::size_t together = 64;
+        if (end <= ready) return;
+        end = std::min((end + together - 1) / together * together, grains_.size());
+        rows_.predict(grains_, time_step, ready, end);
+        std::fill(sums_.begin() + static_cast<std::ptrdiff_t>(ready),
+                  sums_.begin() + static_cast<std::ptrdiff_t>(end), dem::ForceSum{});
+        ready = end;
+    };
+    if (clumps_.exists() || shear_) make_ready(grains_.size());
+    rows_halo_.for_each_sent([&](std::size_t i) {
+        if (i >= ready) rows_.predict(grains_, time_step, i, i + 1);
+    });
     clumps_.predict(grains_, time_step, rows_);
     if (shear_) shear_->place_velocities(grains_, rows_);
     if (bonds_.in_use()) {
@@ -261,9 +274,10 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::halo);
     rows_halo_.begin(rows_.values());
     phases_.enter(Phase::forces);
-    const double approach = 2 * moved_ + 0.001 * setup_.skin;  // and what rounding may add
-    const dem::Evaluation evaluation{rows_, time_step, approach, sums_, largest_radius_};
+    const double approach = 2 * moved_ + negligible_gap();
+    const dem::Evaluation evaluation{rows_, time_step, approach, sums_, largest_radius_, make_ready};
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
+    make_ready(grains_.size());
     poses_ = poses_at(time_ + time_step);
     refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
@@ -272,7 +286,7 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::forces);
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
     if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
-    evaluated_ += pairs_.now.count + at_walls_.touches().size();
+    evaluated_ += pairs_.contact_count() + at_walls_.touches().size();
     if (!clumps_.exists()) return;
     clumps_.take_forces(grains_, sums_, units_);
     phases_.enter(Phase::halo);
@@ -412,7 +426,7 @@ void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& recor
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
-    dem::restore_records(map, id_of, id_of, pairs_);
+    dem::restore_records(map, reach_ + negligible_gap(), id_of, id_of, pairs_);
     std::vector<std::uint8_t> needed = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
     bonds_.mark_copies(grains_.size(), needed);
     if (shear_) shear_->note_copies(grains_, needed);

@@ -160,6 +160,8 @@ class GrainSimulation {
     void join_grains();
     void refuse_bond(const dem::BondFault& found);
     double listed_gap() const { return reach_ + setup_.skin; }
+    /// More than rounding may add to a gap.
+    double negligible_gap() const { return 0.001 * setup_.skin; }
 
     const Communicator& comm_;
     dem::PeriodicPlaces places_;

@@ -23,7 +23,7 @@ void GrainRows::reset(const ParticleSet& grains, std::span<const double> units,
     }
 }
 
-void GrainRows::predict(const ParticleSet& grains, double time_step) {
+void GrainRows::predict(const ParticleSet& grains, double time_step, std::size_t begin, std::size_t end) {
     std::array<const double*, 3> x, v, a, w, dw;
     for (int axis = 0; axis < 3; ++axis) {
         const auto c = static_cast<std::size_t>(axis);
@@ -36,8 +36,8 @@ void GrainRows::predict(const ParticleSet& grains, double time_step) {
     const double* radius = grains.data(field::radius);
     std::array<double, width> none;  // where lanes without a grain store
     std::array<double*, lane_count> rows;
-    for (std::size_t i = 0; i < grains.size(); i += lane_count) {
-        const std::size_t count = std::min(lane_count, grains.size() - i);
+    for (std::size_t i = begin; i < end; i += lane_count) {
+        const std::size_t count = std::min(lane_count, end - i);
         for (std::size_t lane = 0; lane < lane_count; ++lane)
             rows[lane] = lane < count ? values_.data() + (i + lane) * width : none.data();
         const auto values = [&](const double* from) { return load_first(from + i, count); };

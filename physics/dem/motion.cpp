@@ -65,7 +65,7 @@ void predict_half_step(ParticleSet& grains, double time_step) {
             field::half_step_angular_velocity);
 }
 
-double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
+double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, const Impulse& impulse, double kick_step, double time_step,
                    double remaining) {
     static_assert(sizeof(ForceSum) == 6 * sizeof(double));
@@ -87,7 +87,6 @@ double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Response
             records[lane] = reinterpret_cast<const double*>(lane < count ? &sums[i + lane] : &none);
         std::array<Lanes, 6> summed;  // whole numbers
         for (std::size_t c = 0; c < 6; c += 2) load_two(records, c, summed[c], summed[c + 1]);
-        std::fill_n(sums.begin() + static_cast<std::ptrdiff_t>(i), count, none);
         const auto sum = [&](std::size_t c) {
             return std::experimental::static_simd_cast<Lanes>(std::bit_cast<IntegerLanes>(summed[c]));
         };
@@ -118,7 +117,6 @@ double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Response
         spoilt += moved2 * 0.0;
         most2 = max(most2, moved2);
     }
-    std::fill(sums.begin() + static_cast<std::ptrdiff_t>(grains.size()), sums.end(), none);
     return all_of(spoilt == 0) ? hmax(most2) : std::numeric_limits<double>::infinity();
 }
 

@@ -56,10 +56,10 @@ struct Impulse {
 };
 
 /// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`, then times
-/// `remaining`, which is 1 unless motion is damped. Sets the sums to zero for the next evaluation. Returns
-/// the square of the largest distance from `responses.start` that a grain will have after the next drift() of
-/// the same time step [m2]; infinite if any value is not finite.
-double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
+/// `remaining`, which is 1 unless motion is damped. Returns the square of the largest distance from
+/// `responses.start` that a grain will have after the next drift() of the same time step [m2]; infinite if
+/// any value is not finite.
+double finish_step(ParticleSet& grains, std::span<const ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, const Impulse& impulse, double kick_step, double time_step,
                    double remaining = 1);
 
