@@ -9,7 +9,7 @@
 namespace talus {
 
 std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
-    rows_.predict(grains_, 0, 0, grains_.size());
+    rows_.predict(grains_, sums_, 0, 0, grains_.size());
     clumps_.predict(grains_, 0, rows_);
     if (shear_) shear_->place_velocities(grains_, rows_);
     rows_halo_.begin(rows_.values());

@@ -16,7 +16,7 @@ namespace {
 /// With less room to spare than vectors take by themselves.
 template <class T>
 void grow(std::vector<T>& values, std::size_t size) {
-    constexpr std::size_t share = 8;
+    constexpr std::size_t share = 16;
     if (size > values.capacity()) values.reserve(size + size / share);
     values.resize(size);
 }
@@ -31,7 +31,7 @@ std::size_t ContactList::contact_count() const {
 
 void ContactList::make_room(Chunk& chunk, std::size_t count) {
     if (count <= chunk.room) return;
-    constexpr std::size_t share = 8;
+    constexpr std::size_t share = 16;
     const std::size_t sets = (count + count / share + lane_count - 1) / lane_count;
     chunk.place = static_cast<std::uint32_t>(pair.size());
     chunk.room = static_cast<std::uint32_t>(sets * lane_count);

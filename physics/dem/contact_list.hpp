@@ -105,17 +105,19 @@ template <class KeyOfFirst, class KeyOfSecond>
 void restore_records(const ContactRecordMap& records, double reach, KeyOfFirst&& key_of_first,
                      KeyOfSecond&& key_of_second, ContactList& list) {
     const std::size_t last_class = list.class_of(reach);
+    std::vector<const ContactRecord*> found;
     for (ContactList::Chunk& chunk : list.chunks) {
-        list.make_room(chunk, chunk.up_to[last_class]);
-        for (std::uint16_t k = 0; k < chunk.up_to[last_class]; ++k) {
-            const std::size_t p = chunk.begin + std::size_t{k};
-            const ContactRecord* record =
-                records.find(key_of_first(list.first[p]), key_of_second(list.second[p]));
-            if (!record) continue;
+        found.clear();
+        for (std::uint32_t p = chunk.begin; p < chunk.begin + chunk.up_to[last_class]; ++p)
+            found.push_back(records.find(key_of_first(list.first[p]), key_of_second(list.second[p])));
+        const auto known = found.size() - static_cast<std::size_t>(std::ranges::count(found, nullptr));
+        list.make_room(chunk, std::max(known, std::size_t{chunk.up_to[0]}));
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (!found[k]) continue;
             const std::size_t place = chunk.place + chunk.contacts++;
-            list.pair[place] = k;
+            list.pair[place] = static_cast<std::uint16_t>(k);
             for (std::size_t c = 0; c < list.history_count(); ++c)
-                list.history[c][place] = record->history[c];
+                list.history[c][place] = found[k]->history[c];
         }
     }
 }
