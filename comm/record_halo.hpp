@@ -21,7 +21,15 @@ class RecordHalo {
     /// of copies; `own`: number of own particles. The halo must have no mirror images. Collective.
     void choose(Halo& halo, std::size_t own, std::span<const std::uint8_t> wanted);
 
-    /// Starts refreshing. The own records must not change until finish().
+    /// Calls visit(i) for the own records that other ranks are sent.
+    template <class Visit>
+    void for_each_sent(Visit&& visit) const {
+        for (const Outgoing& outgoing : outgoing_)
+            if (outgoing.rank != comm_.rank())
+                for (const Sent& sent : outgoing.sent) visit(std::size_t{sent.record});
+    }
+
+    /// Starts refreshing. The own records that others are sent must not change until finish().
     void begin(std::span<double> records);
     /// Waits for the copies and puts them in their places.
     void finish(std::span<double> records);

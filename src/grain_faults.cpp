@@ -11,6 +11,7 @@ namespace talus {
 void GrainSimulation::refuse_not_finite() {
     if (!fault_.empty()) return;
     fault_ = fmt::format("step {}, time {} s: ", step_, time_);
+    show_accelerations();
     if (const NotFinite found = find_not_finite(grains_); found.field) {
         fault_ += fmt::format("{} of grain {} is not finite", found.field->name, found.id);
         return;

@@ -154,6 +154,28 @@ void GrainSimulation::start() {
     if (bonds_.in_use()) join_grains();
     evaluate(0);
     finish(0, gravity_ ? gravity_->start(grains_, *grid_, decomposition_) : dem::Impulse{});
+    if (setup_.fluid_cells) show_accelerations();
+}
+
+/// Accelerations become fields, which travel with their grains and can be saved.
+void GrainSimulation::show_accelerations() {
+    if (grains_.has(field::acceleration)) return;
+    grains_.add(field::acceleration);
+    grains_.add(field::angular_acceleration);
+    auto& columns = grains_.columns();  // in the order of add_fields()
+    const auto behind = std::ranges::find(columns, &field::radius, &Column::info);
+    std::rotate(behind, columns.end() - 2, columns.end());
+    dem::put_accelerations(sums_, grains_);
+}
+
+/// The reverse: most steps need no second place for them.
+void GrainSimulation::hide_accelerations() {
+    if (!grains_.has(field::acceleration)) return;
+    sums_.resize(grains_.size() + 1);
+    dem::put_rates(grains_, sums_);
+    std::erase_if(grains_.columns(), [](const Column& column) {
+        return column.info == &field::acceleration || column.info == &field::angular_acceleration;
+    });
 }
 
 void GrainSimulation::join_grains() {
@@ -186,16 +208,18 @@ void GrainSimulation::resume(double time, std::uint64_t step, const std::map<std
         bonds_.adopt(dem::read_pairs<dem::bond_values>(comm_, *bonds, dem::BondList::fields(), grains_));
     arrange(dem::read_pairs<dem::most_history>(comm_, contacts, history_fields(setup_), grains_), time_);
     outdated_ = true;  // how far grains have moved is not known
+    if (setup_.fluid_cells) show_accelerations();
 }
 
 void GrainSimulation::step() {
     phases_.enter(Phase::motion);
     std::optional<std::vector<dem::ContactRecord>> kept_contacts = exchange_grains();
+    hide_accelerations();
     if (gravity_) gravity_->begin_step(grains_, responses_);
     if (shear_)
-        shear_->drift(grains_, setup_.time_step, places_);
+        shear_->drift(grains_, sums_, setup_.time_step, places_);
     else
-        dem::drift(grains_, setup_.time_step, places_);
+        dem::drift(grains_, sums_, setup_.time_step, places_);
     clumps_.drift(grains_, setup_.time_step, places_);
     if (outdated_ || kept_contacts || (gravity_ && gravity_->ends_block()))
         arrange(kept_contacts ? std::move(*kept_contacts) : records_of_contacts(), time_ + setup_.time_step);
@@ -204,6 +228,7 @@ void GrainSimulation::step() {
     time_ += setup_.time_step;
     phases_.enter(Phase::gravity);
     finish(setup_.time_step, gravity_ ? gravity_->end_step(grains_, *grid_, decomposition_) : dem::Impulse{});
+    if (setup_.fluid_cells) show_accelerations();
     if (time_ < 0) settle();
     phases_.stop();
 }
@@ -212,6 +237,7 @@ void GrainSimulation::step() {
 /// made anew. Those of grains that went are not found again.
 std::optional<std::vector<dem::ContactRecord>> GrainSimulation::exchange_grains() {
     if (!flow_.due(step_)) return {};
+    show_accelerations();
     std::vector<dem::ContactRecord> contacts = records_of_contacts();
     const std::vector<dem::WallPose> poses = poses_at(time_);
     const GrainFlow::Change change =
@@ -225,6 +251,7 @@ std::optional<std::vector<dem::ContactRecord>> GrainSimulation::exchange_grains(
 void GrainSimulation::settle() {
     const GrainSettling& settling = *setup_.settling;
     if (step_ % settling.interval != 0) return;
+    show_accelerations();
     const double imbalance = force_imbalance(comm_, grains_, setup_.held, loaded_contacts());
     quiet_looks_ = imbalance <= settling.imbalance && !flow_.inserting(time_) ? quiet_looks_ + 1 : 0;
     if (quiet_looks_ >= settling.lasting) {
@@ -256,11 +283,23 @@ std::vector<std::string> GrainSimulation::take_notes() {
 /// Forces and torques of all contacts, those of own grains while copies are on their way.
 void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::motion);
-    rows_.predict(grains_, time_step);
+    std::size_t ready = 0;  // own grains
+    const auto make_ready = [&](std::size_t end) {
+        constexpr std::size_t together = 64;
+        if (end <= ready) return;
+        end = std::min((end + together - 1) / together * together, grains_.size());
+        rows_.predict(grains_, sums_, time_step, ready, end);
+        dem::begin_kick(grains_, sums_, time_step, ready, end);
+        ready = end;
+    };
+    if (clumps_.exists() || shear_ || bonds_.in_use()) make_ready(grains_.size());
+    rows_halo_.for_each_sent([&](std::size_t i) {
+        if (i >= ready) rows_.predict(grains_, sums_, time_step, i, i + 1);
+    });
     clumps_.predict(grains_, time_step, rows_);
     if (shear_) shear_->place_velocities(grains_, rows_);
     if (bonds_.in_use()) {
-        dem::predict_half_step(grains_, time_step);
+        dem::keep_half_step(grains_);
         decomposition_.halo().begin(grains_,
                                     {&field::half_step_velocity, &field::half_step_angular_velocity});
         decomposition_.halo().finish();
@@ -268,9 +307,10 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::halo);
     rows_halo_.begin(rows_.values());
     phases_.enter(Phase::forces);
-    const double approach = 2 * moved_ + 0.001 * setup_.skin;  // and what rounding may add
-    const dem::Evaluation evaluation{rows_, time_step, approach, sums_, largest_radius_};
+    const double approach = 2 * moved_ + negligible_gap();
+    const dem::Evaluation evaluation{rows_, time_step, approach, sums_, largest_radius_, make_ready};
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::own, pairs_), false);
+    make_ready(grains_.size());
     poses_ = poses_at(time_ + time_step);
     refuse_overload(at_walls_.evaluate(evaluation, setup_.laws, setup_.walls, poses_), true);
     phases_.enter(Phase::halo);
@@ -279,7 +319,7 @@ void GrainSimulation::evaluate(double time_step) {
     phases_.enter(Phase::forces);
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
     if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
-    evaluated_ += pairs_.now.count + at_walls_.touches().size();
+    evaluated_ += pairs_.contact_count() + at_walls_.touches().size();
     if (!clumps_.exists()) return;
     clumps_.take_forces(grains_, sums_, units_);
     phases_.enter(Phase::halo);
@@ -302,7 +342,7 @@ void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
     // the list.
     const double allowed = 0.499 * setup_.skin;
     if (!std::isfinite(moved2)) refuse_not_finite();
-    if (shear_) moved2 = shear_->moved2(grains_, responses_.start, 2 * largest_radius_ + listed_gap());
+    if (shear_) moved2 = shear_->moved2(grains_, sums_, responses_.start, 2 * largest_radius_ + listed_gap());
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
     std::array<double, 3> greatest{moved2, walls_moved || bonds_.broken() ? 1.0 : 0.0,
@@ -344,6 +384,7 @@ void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double ti
         shear_->bring_back(grains_);
         grid_->displace_images(shear_->offset());
     }
+    show_accelerations();
     apply_boundaries(grains_, setup_.box);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
     if (leader_) {
@@ -387,7 +428,7 @@ void GrainSimulation::describe_grains() {
                      dem::greatest_bond_force(setup_.bonds, radius[i])));
     rows_.reset(grains_, units, setup_.material);
     if (clumps_.exists()) units_ = units;
-    sums_.assign(own + 1, {});
+    hide_accelerations();
     responses_.acceleration.resize(own);
     for (std::size_t i = 0; i < own; ++i)
         responses_.acceleration[i] =
@@ -419,7 +460,7 @@ void GrainSimulation::list_contacts(const std::vector<dem::ContactRecord>& recor
     const std::uint64_t* id = grains_.data(field::copied_id);
     const auto id_of = [id](std::uint32_t i) { return id[i]; };
     const dem::ContactRecordMap map(records);
-    dem::restore_records(map, id_of, id_of, pairs_);
+    dem::restore_records(map, reach_ + negligible_gap(), id_of, id_of, pairs_);
     std::vector<std::uint8_t> needed = dem::copies_in(pairs_, grains_.size(), grains_.halo_size());
     bonds_.mark_copies(grains_.size(), needed);
     if (shear_) shear_->note_copies(grains_, needed);
@@ -449,6 +490,7 @@ ParticleSet GrainSimulation::save() {
     outdated_ = true;
     phases_.stop();
     comm_.all_agree(fault_ == known_fault ? 0 : 1, fault_);
+    show_accelerations();
     ParticleSet contacts = dem::empty_contacts(grains_.dimension(), history_fields(setup_));
     dem::save_pairs(records_below(grains_.size()), history_fields(setup_), contacts);
     return contacts;

@@ -110,6 +110,7 @@ class GrainSimulation {
     double time() const { return time_; }                  ///< [s]
     double time_step() const { return setup_.time_step; }  ///< [s]
     std::uint64_t step_count() const { return step_; }
+    /// Accelerations are among the fields after save() only, and always if there is a fluid.
     const ParticleSet& grains() const { return grains_; }
     const GrainSetup& setup() const { return setup_; }
     const dem::ClumpMotion& clumps() const { return clumps_; }
@@ -147,6 +148,8 @@ class GrainSimulation {
   private:
     void arrange(std::vector<dem::ContactRecord> records, double time);
     std::optional<std::vector<dem::ContactRecord>> exchange_grains();
+    void show_accelerations();
+    void hide_accelerations();
     std::vector<dem::ContactRecord> records_of_contacts() const;
     std::vector<dem::ContactRecord> records_below(std::size_t end) const;
     void describe_grains();
@@ -163,6 +166,8 @@ class GrainSimulation {
     void join_grains();
     void refuse_bond(const dem::BondFault& found);
     double listed_gap() const { return reach_ + setup_.skin; }
+    /// More than rounding may add to a gap.
+    double negligible_gap() const { return 0.001 * setup_.skin; }
 
     const Communicator& comm_;
     dem::PeriodicPlaces places_;
@@ -183,8 +188,8 @@ class GrainSimulation {
     dem::ClumpMotion clumps_;
     RecordHalo rows_halo_;
     dem::Responses responses_;
-    std::vector<double> units_;  ///< of force of each grain and copy, if there are clumps [N]
-    std::vector<dem::ForceSum> sums_;
+    std::vector<double> units_;        ///< of force of each grain and copy, if there are clumps [N]
+    std::vector<dem::ForceSum> sums_;  ///< between evaluations rates in their place, unless fields hold them
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;

@@ -9,7 +9,7 @@
 namespace talus {
 
 std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
-    rows_.predict(grains_, 0);
+    rows_.predict(grains_, sums_, 0, 0, grains_.size());
     clumps_.predict(grains_, 0, rows_);
     if (shear_) shear_->place_velocities(grains_, rows_);
     rows_halo_.begin(rows_.values());
@@ -75,18 +75,18 @@ GrainTotals GrainSimulation::totals() const {
     const auto is_contact = [&](double overlap, const auto& remembered) {
         return reach_ == 0 || overlap > 0 || (sticks_at > 0 && remembered(sticks_at - 1) > 0);
     };
-    for (std::size_t k = 0; k < pairs_.now.count; ++k) {
-        const std::uint32_t i = pairs_.first[pairs_.now.pair[k]], j = pairs_.second[pairs_.now.pair[k]];
+    pairs_.for_each_contact([&](std::size_t p, std::size_t k) {
+        const std::uint32_t i = pairs_.first[p], j = pairs_.second[p];
         double distance2 = 0;
         for (std::size_t a = 0; a < 3; ++a)
             distance2 += (rows_[i][a] - rows_[j][a]) * (rows_[i][a] - rows_[j][a]);
         const double overlap = r[i] + r[j] - std::sqrt(distance2);
         counts[0] +=
-            i < grains_.size() && is_contact(overlap, [&](std::size_t c) { return pairs_.now.history[c][k]; })
+            i < grains_.size() && is_contact(overlap, [&](std::size_t c) { return pairs_.history[c][k]; })
                 ? 1
                 : 0;
         greatest[1] = std::max(greatest[1], overlap / std::min(r[i], r[j]));
-    }
+    });
     for (const dem::WallTouch& touch : at_walls_.touches()) {
         greatest[1] = std::max(greatest[1], touch.overlap / r[touch.grain]);
         counts[1] += is_contact(touch.overlap, [&](std::size_t c) { return touch.history[c]; }) ? 1 : 0;

@@ -16,28 +16,32 @@ namespace {
 /// With less room to spare than vectors take by themselves.
 template <class T>
 void grow(std::vector<T>& values, std::size_t size) {
-    constexpr std::size_t share = 8;
+    constexpr std::size_t share = 16;
     if (size > values.capacity()) values.reserve(size + size / share);
     values.resize(size);
 }
 
 }  // namespace
 
-void Contacts::reserve(std::size_t more) {
-    const std::size_t least = count + more + lane_count;
-    if (pair.size() >= least) return;
-    grow(pair, least);
-    for (std::vector<double>& values : history) grow(values, least);
+std::size_t ContactList::contact_count() const {
+    std::size_t count = 0;
+    for (const Chunk& chunk : chunks) count += chunk.contacts;
+    return count;
 }
 
-void Contacts::close() {
-    reserve(1);
-    pair[count] = std::numeric_limits<std::uint32_t>::max();
-    for (std::vector<double>& values : history) values[count] = 0;
+void ContactList::make_room(Chunk& chunk, std::size_t count) {
+    if (count <= chunk.room) return;
+    constexpr std::size_t share = 16;
+    const std::size_t sets = (count + count / share + lane_count - 1) / lane_count;
+    chunk.place = static_cast<std::uint32_t>(pair.size());
+    chunk.room = static_cast<std::uint32_t>(sets * lane_count);
+    grow(pair, pair.size() + chunk.room);
+    for (std::vector<double>& values : history) grow(values, pair.size());
 }
 
-std::size_t Contacts::bytes() const {
-    std::size_t bytes = pair.capacity() * sizeof(std::uint32_t);
+std::size_t ContactList::bytes() const {
+    std::size_t bytes = (first.capacity() + second.capacity()) * sizeof(std::uint32_t) +
+                        chunks.capacity() * sizeof(Chunk) + pair.capacity() * sizeof(std::uint16_t);
     for (const std::vector<double>& values : history) bytes += values.capacity() * sizeof(double);
     return bytes;
 }
@@ -57,8 +61,8 @@ class ListedPairs {
         list_.first.clear();
         list_.second.clear();
         list_.chunks.clear();
-        list_.now.clear();
-        list_.before.clear();
+        list_.pair.clear();
+        for (std::vector<double>& values : list_.history) values.clear();
         list_.margin = rule.margin;
     }
 
@@ -93,8 +97,10 @@ class ListedPairs {
     /// Appends a chunk, sorted by classes of gaps, which is empty then.
     void put(std::vector<Pair>& pairs) {
         std::array<std::uint8_t, ContactList::chunk_size> of_class;
-        ContactList::Chunk chunk{static_cast<std::uint32_t>(list_.size()), {}};
+        ContactList::Chunk chunk{.begin = static_cast<std::uint32_t>(list_.size()), .grains = grains_};
         for (std::size_t k = 0; k < pairs.size(); ++k) {
+            for (const std::uint32_t i : {pairs[k].first, pairs[k].second})
+                if (i < own_) chunk.grains = std::max(chunk.grains, i + 1);
             of_class[k] = static_cast<std::uint8_t>(list_.class_of(gap(pairs[k])));
             ++chunk.up_to[of_class[k]];
         }
@@ -110,6 +116,7 @@ class ListedPairs {
             list_.first[p] = pairs[k].first;
             list_.second[p] = pairs[k].second;
         }
+        grains_ = chunk.grains;
         list_.chunks.push_back(chunk);
         pairs.clear();
     }
@@ -128,6 +135,7 @@ class ListedPairs {
     const PairRule& rule_;
     ContactList& list_;
     std::vector<Pair> chunk_, with_copies_;
+    std::uint32_t grains_ = 0;  ///< above all own ones of the chunks before
 };
 
 }  // namespace

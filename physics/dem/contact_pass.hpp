@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "physics/dem/contact_list.hpp"
@@ -19,6 +20,9 @@ struct Evaluation {
     double approach;           ///< no two grains have come nearer by more since the pairs were listed [m]
     std::span<ForceSum> sums;  ///< of the own grains, and one behind for all others
     double largest_radius;     ///< [m]
+    /// Makes the rows and sums of the own grains below `end` ready, if they are not yet. Pairs of own grains
+    /// ask for it just before they reach for these, so that what is made ready is still in the cache.
+    std::function<void(std::size_t end)> make_ready;
 };
 
 /// A contact whose force is not finite or beyond what its grains could bear pressed flat.

@@ -1,4 +1,5 @@
 #pragma once
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -11,6 +12,14 @@ namespace talus::dem {
 struct alignas(16) ForceSum {
     std::int64_t force[3], torque[3];
 };
+
+/// What follows from the sums takes their place until the next ones are begun: accelerations [m s-2] and
+/// angular accelerations [rad s-2].
+struct Rates {
+    double acceleration[3], angular_acceleration[3];
+};
+inline Rates rates_in(const ForceSum& sum) { return std::bit_cast<Rates>(sum); }
+inline ForceSum in_place_of_sum(const Rates& rates) { return std::bit_cast<ForceSum>(rates); }
 
 /// The greatest force of one contact is 2^57 units: so many may act together, and what is cut off is 1e-17
 /// of it.

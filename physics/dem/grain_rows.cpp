@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "domain/grain_fields.hpp"
+#include "physics/dem/rate_lanes.hpp"
 
 namespace talus::dem {
 
@@ -23,32 +24,32 @@ void GrainRows::reset(const ParticleSet& grains, std::span<const double> units,
     }
 }
 
-void GrainRows::predict(const ParticleSet& grains, double time_step) {
-    std::array<const double*, 3> x, v, a, w, dw;
+void GrainRows::predict(const ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
+                        std::size_t begin, std::size_t end) {
+    std::array<const double*, 3> x, v, w;
     for (int axis = 0; axis < 3; ++axis) {
         const auto c = static_cast<std::size_t>(axis);
         x[c] = grains.data(field::position, axis);
         v[c] = grains.data(field::velocity, axis);
-        a[c] = grains.data(field::acceleration, axis);
         w[c] = grains.data(field::angular_velocity, axis);
-        dw[c] = grains.data(field::angular_acceleration, axis);
     }
     const double* radius = grains.data(field::radius);
     std::array<double, width> none;  // where lanes without a grain store
     std::array<double*, lane_count> rows;
-    for (std::size_t i = 0; i < grains.size(); i += lane_count) {
-        const std::size_t count = std::min(lane_count, grains.size() - i);
+    for (std::size_t i = begin; i < end; i += lane_count) {
+        const std::size_t count = std::min(lane_count, end - i);
         for (std::size_t lane = 0; lane < lane_count; ++lane)
             rows[lane] = lane < count ? values_.data() + (i + lane) * width : none.data();
         const auto values = [&](const double* from) { return load_first(from + i, count); };
-        const auto predicted = [&](const double* now, const double* rate) {
-            return values(now) + time_step * values(rate);
+        const LanesOfRates rate = load_rates(rates, i, count);
+        const auto predicted = [&](const double* now, std::size_t c) {
+            return values(now) + time_step * rate[c];
         };
         store_two(rows, 0, values(x[0]), values(x[1]));
         store_two(rows, 2, values(x[2]), values(radius));
-        store_two(rows, 4, predicted(v[0], a[0]), predicted(v[1], a[1]));
-        store_two(rows, 6, predicted(v[2], a[2]), predicted(w[0], dw[0]));
-        store_two(rows, 8, predicted(w[1], dw[1]), predicted(w[2], dw[2]));
+        store_two(rows, 4, predicted(v[0], 0), predicted(v[1], 1));
+        store_two(rows, 6, predicted(v[2], 2), predicted(w[0], 3));
+        store_two(rows, 8, predicted(w[1], 4), predicted(w[2], 5));
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "domain/lanes.hpp"
 #include "domain/particles.hpp"
+#include "physics/dem/force_sum.hpp"
 #include "physics/dem/laws/kinematics.hpp"
 
 namespace talus::dem {
@@ -22,11 +23,12 @@ class GrainRows {
     /// each body.
     void reset(const ParticleSet& grains, std::span<const double> units,
                std::span<const std::uint8_t> material);
-    /// Positions of the own grains, and their velocities and angular velocities of the end of the step as far
-    /// as they are known: v + dt a. A contact law must see velocities of the same time as positions, not
-    /// those of half a step before: D. Vyas, J. M. Ottino, R. M. Lueptow, P. B. Umbanhowar, arXiv 2410.14798
-    /// (2024).
-    void predict(const ParticleSet& grains, double time_step);
+    /// Positions of the own grains from `begin` on and below `end`, and their velocities and angular
+    /// velocities of the end of the step as far as they are known: v + dt a, a the `rates` in place of the
+    /// sums. A contact law must see velocities of the same time as positions, not those of half a step
+    /// before: D. Vyas, J. M. Ottino, R. M. Lueptow, P. B. Umbanhowar, arXiv 2410.14798 (2024).
+    void predict(const ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
+                 std::size_t begin, std::size_t end);
 
     /// In place of what predict() found for grain i.
     void put_velocities(std::size_t i, const Vector3<>& velocity, const Vector3<>& angular_velocity) {

@@ -20,7 +20,8 @@ class PeriodicPlaces {
     explicit PeriodicPlaces(const Box& box);
     /// Nearest place; a displacement is brought to one before it is added, for the sum would be rounded
     /// twice.
-    double operator()(int axis, double coordinate) const {
+    template <class Real>
+    Real operator()(int axis, const Real& coordinate) const {
         const double shift = shifts_[static_cast<std::size_t>(axis)];
         return (coordinate + shift) - shift;
     }
@@ -32,12 +33,22 @@ class PeriodicPlaces {
 };
 
 /// x += dt v + dt^2/2 a of the own grains: first part of the velocity Verlet step. L. Verlet, Phys. Rev. 159
-/// (1967) 98; W. C. Swope et al., J. Chem. Phys. 76 (1982) 637.
-void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places);
+/// (1967) 98; W. C. Swope et al., J. Chem. Phys. 76 (1982) 637. `rates`: a in place of the sums.
+void drift(ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
+           const PeriodicPlaces& places);
 
-/// Velocities and angular velocities of the middle of the step, v + dt/2 a: what springs are stretched by
-/// within the step, to second order. For grains with bonds.
-void predict_half_step(ParticleSet& grains, double time_step);
+/// The first half of the kick, v += dt/2 a, of the own grains from `begin` on and below `end`. Rates give
+/// way to sums, which are zero.
+void begin_kick(ParticleSet& grains, std::span<ForceSum> rates, double time_step, std::size_t begin,
+                std::size_t end);
+
+/// For grains with bonds, after begin_kick(): velocities and angular velocities are those of the middle of
+/// the step, what springs are stretched by within the step, to second order.
+void keep_half_step(ParticleSet& grains);
+
+/// Rates from the fields of accelerations, and the reverse.
+void put_rates(const ParticleSet& grains, std::span<ForceSum> rates);
+void put_accelerations(std::span<const ForceSum> rates, ParticleSet& grains);
 
 /// What turns a grain's sums of forces into its acceleration, made anew with the order of grains.
 struct Responses {
@@ -55,10 +66,10 @@ struct Impulse {
     std::array<const double*, 3> steady{};
 };
 
-/// Accelerations of now; the velocities' part, v += dt/2 (a_before + a_now) with dt = `kick_step`, then times
-/// `remaining`, which is 1 unless motion is damped. Sets the sums to zero for the next evaluation. Returns
-/// the square of the largest distance from `responses.start` that a grain will have after the next drift() of
-/// the same time step [m2]; infinite if any value is not finite.
+/// Accelerations of now take the place of the sums; the other half of the kick, v += dt/2 a with dt =
+/// `kick_step`, then times `remaining`, which is 1 unless motion is damped. Returns the square of the largest
+/// distance from `responses.start` that a grain will have after the next drift() of the same time step [m2];
+/// infinite if any value is not finite.
 double finish_step(ParticleSet& grains, std::span<ForceSum> sums, const Responses& responses,
                    const Vector3<>& gravity, const Impulse& impulse, double kick_step, double time_step,
                    double remaining = 1);

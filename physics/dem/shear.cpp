@@ -42,11 +42,12 @@ void Shear::go_to(std::uint64_t step) {
     }
 }
 
-void Shear::drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) {
+void Shear::drift(ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
+                  const PeriodicPlaces& places) {
     const double* y = grains.data(field::position, 1);
     std::vector<double> before(grains.size());
     for (std::size_t i = 0; i < grains.size(); ++i) before[i] = turns_of(y[i]);
-    dem::drift(grains, time_step, places);
+    dem::drift(grains, rates, time_step, places);
     double *x = grains.data(field::position, 0), *v = grains.data(field::velocity, 0);
     for (std::size_t i = 0; i < grains.size(); ++i) {
         x[i] += before[i] * advance_;
@@ -92,17 +93,18 @@ void Shear::move_copies(GrainRows& rows) const {
 /// Two grains at r at the list that moved with the flow would now be at A r, A = 1 + g e_x e_y with the shear
 /// g since then, |A r| >= |r| / (1 + |g|): nearer by at most |r| |g| / (1 + |g|). What each moved besides
 /// adds.
-double Shear::moved2(const ParticleSet& grains, const std::array<StaggeredVector<double>, 3>& start,
-                     double listed) const {
+double Shear::moved2(const ParticleSet& grains, std::span<const ForceSum> rates,
+                     const std::array<StaggeredVector<double>, 3>& start, double listed) const {
     const double sheared = static_cast<double>(step_ + 1 - listed_step_) * advance_ / length_y_;
     double most2 = 0;
     for (std::size_t i = 0; i < grains.size(); ++i) {
+        const Rates of_grain = rates_in(rates[i]);
         double distance2 = 0;
         for (std::size_t a = 0; a < 3; ++a) {
             const int axis = static_cast<int>(a);
             double moved = grains.data(field::position, axis)[i] - start[a][i] +
                            time_step_ * (grains.data(field::velocity, axis)[i] +
-                                         0.5 * time_step_ * grains.data(field::acceleration, axis)[i]);
+                                         0.5 * time_step_ * of_grain.acceleration[a]);
             if (axis == 0)
                 moved += turns_of(grains.data(field::position, 1)[i]) * advance_ -
                          sheared * (start[1][i] - lower_ - 0.5 * length_y_);

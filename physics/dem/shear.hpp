@@ -38,7 +38,8 @@ class Shear {
     double velocity() const { return velocity_; }
 
     /// In place of dem::drift(): positions advance by a step, velocities of grains that cross change.
-    void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places);
+    void drift(ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
+               const PeriodicPlaces& places);
     /// After rows.predict(): predicted velocities are those of the image that the position is of.
     void place_velocities(const ParticleSet& grains, GrainRows& rows) const;
     /// Positions along x and y are those of the image within the box along y.
@@ -52,8 +53,8 @@ class Shear {
     /// Square of a distance of which twice is the most that the gap of two grains can have shrunk from the
     /// list to the end of the next step [m2]. `start`: positions at the time of the list; `listed`: greatest
     /// distance of centres up to which pairs were listed [m].
-    double moved2(const ParticleSet& grains, const std::array<StaggeredVector<double>, 3>& start,
-                  double listed) const;
+    double moved2(const ParticleSet& grains, std::span<const ForceSum> rates,
+                  const std::array<StaggeredVector<double>, 3>& start, double listed) const;
 
   private:
     double turns_of(double y) const;

@@ -1,19 +1,22 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <experimental/simd>
+#include <limits>
 #include <stdexcept>
 
 #include "physics/dem/contact_pass.hpp"
 
 namespace talus::dem {
 
-/// The pairs of [begin, end) whose gap is below `reach`, appended to the contacts, which have room for them.
-inline void find_touching(const GrainRows& rows, double reach, std::size_t begin, std::size_t end,
-                          ContactList& list) {
+/// The pairs of [begin, end) whose gap is below `reach` are put to `found`, which has room for a set of lanes
+/// more; returns how many they are.
+inline std::size_t find_touching(const GrainRows& rows, double reach, const ContactList& list,
+                                 std::size_t begin, std::size_t end, std::uint32_t* found) {
     std::array<std::uint32_t, lane_count> pair;
     GrainRows::Pointers a, b;
-    Contacts& contacts = list.now;
+    std::size_t count = 0;
     for (std::size_t k = begin; k < end; k += lane_count) {
         for (std::size_t lane = 0; lane < lane_count; ++lane) {
             const std::size_t p = std::min(k + lane, end - 1);
@@ -31,8 +34,9 @@ inline void find_touching(const GrainRows& rows, double reach, std::size_t begin
         const Lanes limit = radius_a + radius_b + reach;
         Lanes excess = dot(r, r) - limit * limit;
         if (k + lane_count > end) excess = select(first_lanes(end - k), excess, Lanes(1.0));
-        contacts.count += keep_negative(excess, pair.data(), contacts.pair.data() + contacts.count);
+        count += keep_negative(excess, pair.data(), found + count);
     }
+    return count;
 }
 
 /// A vector in whole units, narrowing `bearable` to the lanes that are within range.
@@ -63,43 +67,50 @@ class PairLoop {
     /// Chunk after chunk, so that the contacts find in the cache what the search has read.
     Overload operator()(Pairs which) {
         const bool own = which == Pairs::own;
-        if (own) {
-            std::swap(list_.now, list_.before);
-            list_.before.close();
-            list_.now.clear();
-        }
         const std::size_t last_class = list_.class_of(reach_ + evaluation_.approach);
-        std::size_t done = list_.now.count;
-        former_ = own ? 0 : first_former_with_copies();
         const std::size_t end = own ? list_.own_chunks : list_.chunks.size();
         for (std::size_t c = own ? 0 : list_.own_chunks; c < end; ++c) {
-            const ContactList::Chunk& chunk = list_.chunks[c];
-            list_.now.reserve(ContactList::chunk_size);
-            find_touching(evaluation_.rows, reach_, chunk.begin, chunk.begin + chunk.up_to[last_class],
-                          list_);
-            for (; done + lane_count <= list_.now.count; done += lane_count) contacts(done, lane_count);
+            ContactList::Chunk& chunk = list_.chunks[c];
+            if (own) evaluation_.make_ready(chunk.grains);
+            take_former(chunk);
+            const std::size_t count = find_touching(evaluation_.rows, reach_, list_, chunk.begin,
+                                                    chunk.begin + chunk.up_to[last_class], found_.data());
+            list_.make_room(chunk, count);
+            chunk.contacts = static_cast<std::uint32_t>(count);
+            for (std::size_t k = 0; k < count; ++k)
+                list_.pair[chunk.place + k] = static_cast<std::uint16_t>(found_[k] - chunk.begin);
+            for (std::size_t k = 0; k < count; k += lane_count)
+                contacts(chunk, k, std::min(lane_count, count - k));
         }
-        if (done < list_.now.count) contacts(done, list_.now.count - done);
         return overload_;
     }
 
   private:
-    std::size_t first_former_with_copies() const {
-        const auto begin = list_.before.pair.begin(),
-                   end = begin + static_cast<std::ptrdiff_t>(list_.before.count);
-        return static_cast<std::size_t>(
-            std::lower_bound(begin, end, static_cast<std::uint32_t>(list_.own_count())) - begin);
+    static constexpr std::size_t most = ContactList::chunk_size + lane_count;
+
+    /// Sets aside the contacts of a chunk at the last evaluation, with an end behind them that remembers
+    /// nothing.
+    void take_former(const ContactList::Chunk& chunk) {
+        former_count_ = chunk.contacts;
+        at_former_ = 0;
+        for (std::size_t k = 0; k < former_count_; ++k)
+            former_pair_[k] = chunk.begin + list_.pair[chunk.place + k];
+        former_pair_[former_count_] = std::numeric_limits<std::uint32_t>::max();
+        for (std::size_t c = 0; c < history_count; ++c) {
+            std::copy_n(list_.history[c].begin() + chunk.place, former_count_, former_history_[c].begin());
+            former_history_[c][former_count_] = 0;
+        }
     }
 
-    /// Works on `count` contacts from `begin` on. Flat: vectors of lanes that are handed to functions go
-    /// through memory.
-    [[gnu::flatten]] void contacts(std::size_t begin, std::size_t count) {
+    /// Works on `count` contacts that were found in a chunk, from `begin` on. Flat: vectors of lanes that are
+    /// handed to functions go through memory.
+    [[gnu::flatten]] void contacts(const ContactList::Chunk& chunk, std::size_t begin, std::size_t count) {
         std::array<std::uint32_t, lane_count> pair;
         GrainRows::Pointers rows_a, rows_b;
         SumPointers sums_a, sums_b;
         const auto own = static_cast<std::uint32_t>(evaluation_.sums.size() - 1);
         for (std::size_t lane = 0; lane < lane_count; ++lane) {
-            pair[lane] = list_.now.pair[begin + std::min(lane, count - 1)];
+            pair[lane] = found_[begin + std::min(lane, count - 1)];
             const std::uint32_t i = list_.first[pair[lane]], j = list_.second[pair[lane]];
             rows_a[lane] = evaluation_.rows[i];
             rows_b[lane] = evaluation_.rows[j];
@@ -116,7 +127,8 @@ class PairLoop {
         const ContactLoad<Lanes> load =
             table_.pairs.materials() == 1 ? only_law_(k, history) : law_of(pair)(k, history);
         for (std::size_t c = 0; c < history_count; ++c)
-            history[c].copy_to(list_.now.history[c].data() + begin, std::experimental::element_aligned);
+            history[c].copy_to(list_.history[c].data() + chunk.place + begin,
+                               std::experimental::element_aligned);
 
         LaneMask bearable = first_lanes(lane_count);
         const ContactLoad<Lanes> opposite{-load.force, -load.couple};
@@ -134,17 +146,16 @@ class PairLoop {
 
     /// What pairs that touched at the last evaluation remember; zeros of the others.
     std::array<Lanes, history_count> remembered(const std::array<std::uint32_t, lane_count>& pair) {
-        const Contacts& before = list_.before;
         std::array<std::size_t, lane_count> from;
         bool in_sequence = true;
         for (std::size_t lane = 0; lane < lane_count; ++lane) {
-            while (before.pair[former_] < pair[lane]) ++former_;
-            from[lane] = before.pair[former_] == pair[lane] ? former_ : before.count;
+            while (former_pair_[at_former_] < pair[lane]) ++at_former_;
+            from[lane] = former_pair_[at_former_] == pair[lane] ? at_former_ : former_count_;
             in_sequence = in_sequence && from[lane] == from[0] + lane;
         }
         std::array<Lanes, history_count> history;
         for (std::size_t c = 0; c < history_count; ++c) {
-            const double* values = before.history[c].data();
+            const double* values = former_history_[c].data();
             history[c] = in_sequence ? talus::load(values + from[0])
                                      : Lanes([&](auto lane) { return values[from[lane]]; });
         }
@@ -170,7 +181,11 @@ class PairLoop {
     const Table& table_;
     ContactList& list_;
     double reach_;
-    std::size_t former_ = 0;  ///< contact of the last evaluation that may be the next to be found again
+    std::array<std::uint32_t, most> found_;        ///< pairs of the chunk that touch
+    std::array<std::uint32_t, most> former_pair_;  ///< of its contacts at the last evaluation
+    std::array<std::array<double, most>, history_count> former_history_;
+    std::size_t former_count_ = 0;
+    std::size_t at_former_ = 0;  ///< the contact of these that may be the next to be found again
     Overload overload_;
     typename Table::LawOfLanes only_law_;
 };
