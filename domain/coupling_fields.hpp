@@ -14,7 +14,7 @@ inline constexpr Field<double> quadrature_volume{
     scalar,
     work,
     halo,
-    "volume with which a fluid particle counts in averages, 0 for walls"};
+    "volume with which a fluid particle counts in averages, less than 0 of walls, which do not"};
 inline constexpr Field<double> solid_fraction{
     "solid_fraction",
     "1",
@@ -40,6 +40,8 @@ inline constexpr Field<std::uint32_t> home_place{"home_place", "1",   scalar,
                                                  state,        owner, "place of the grain on that rank"};
 inline constexpr Field<double> kernel_sum{
     "kernel_sum", "1", scalar, work, halo, "sum of the weights of the fluid around: 1 far within even fluid"};
+inline constexpr Field<double> wet_share{"wet_share", "1",  scalar,
+                                         work,        halo, "share of a grain's volume that is in the fluid"};
 inline constexpr Field<double> exchanged_force{
     "exchanged_force", "N", vector, work, halo, "force of the fluid on the grain"};
 

@@ -11,6 +11,7 @@
 
 #include "comm/exact_sum.hpp"
 #include "domain/coupling_fields.hpp"
+#include "physics/coupling/free_surface.hpp"
 #include "physics/dem/vectors.hpp"
 
 namespace talus {
@@ -23,7 +24,8 @@ ParticleSet immersed_set() {
     ParticleSet set("immersed", 3);
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::angular_velocity, &field::acceleration, &field::radius, &field::mass,
-             &field::body, &of::home_rank, &of::home_place, &of::kernel_sum, &of::exchanged_force})
+             &field::body, &of::home_rank, &of::home_place, &of::kernel_sum, &of::wet_share,
+             &of::exchanged_force})
         set.add(*info);
     return set;
 }
@@ -56,12 +58,21 @@ CoupledSimulation::CoupledSimulation(const Communicator& comm, CoupledSetup setu
     water_.before_evaluation([this](double) { immerse(); });
 }
 
+void CoupledSimulation::settle(const std::function<void()>& before_step) {
+    grains_.start();
+    while (grains_.time() < 0) {
+        before_step();
+        grains_.step();
+    }
+    settled_ = true;
+}
+
 void CoupledSimulation::start() {
     starting_ = true;
     water_.start();
     starting_ = false;
     grains_.follow(water_.decomposition().partition());
-    grains_.start();
+    if (!settled_) grains_.start();
     immerse();
     choose_time_step();
     exchange();
@@ -189,7 +200,7 @@ void CoupledSimulation::immerse() {
     };
     for (std::size_t a = 0; a < water.particles.size(); ++a) {
         const bool counts = (walls.empty() || !walls[body[a]]) && !is_behind(place[a]);
-        volume[a] = counts ? mass[a] / density[a] : 0.0;
+        volume[a] = (counts ? 1 : -1) * mass[a] / density[a];
     }
     refresh_water({&field::position, &of::quadrature_volume});
     fill_immersed();
@@ -198,16 +209,21 @@ void CoupledSimulation::immerse() {
     immersed_cells_.arrange(immersed_, water.grid);
     refresh_immersed({&field::position, &field::radius});
     pairs_ += coupling::sum_weights(mixture(), setup_.coupling.spreading);
-    refresh_immersed({&of::kernel_sum});
+    refresh_immersed({&of::kernel_sum, &of::wet_share});
     const CouplingSetup& how = setup_.coupling;
     pairs_ += coupling::spread_volume(mixture(), how.spreading, how.fraction, of::solid_fraction);
     if (&shared_fraction() != &of::solid_fraction)
         pairs_ += coupling::spread_volume(mixture(), how.spreading, coupling::VolumeFraction::normalised,
                                           of::shared_fraction);
-    if (!starting_) return;
+    if (!starting_) {
+        coupling::relieve_free_surface(water.particles, water.decomposition.table(),
+                                       setup_.water.settings.radius(),
+                                       setup_.water.settings.state.reference_density);
+        return;
+    }
     const double* solid = water.particles.data(of::solid_fraction);
     for (std::size_t a = 0; a < water.particles.size(); ++a) {
-        if (volume[a] == 0) continue;
+        if (!(volume[a] > 0)) continue;
         const double left = water::share_of_water(solid[a]);
         water.particles.data(field::mass)[a] *= left;
         water.particles.data(field::density)[a] *= left;
@@ -242,7 +258,7 @@ void CoupledSimulation::exchange() {
                                           .velocity = velocity[i],
                                           .spin = spin[i],
                                           .other_acceleration = others[i]};
-        const double wet = how.spreading.wet_share(immersed_.data(of::kernel_sum)[i]);
+        const double wet = immersed_.data(of::wet_share)[i];
         force.put(i, coupling::mean_force(how.laws, grain, around[i], wet, water_.time_step()));
         if (how.laws.torque)
             spin.put(i, coupling::relaxed_spin(how.laws, grain, around[i], wet, water_.time_step()));
@@ -348,7 +364,7 @@ CouplingTotals CoupledSimulation::totals() const {
     std::uint64_t clipped = 0;
     for (std::size_t a = 0; a < water.size(); ++a) {
         const double v = water.data(of::quadrature_volume)[a], solid = water.data(of::solid_fraction)[a];
-        if (v == 0) continue;
+        if (!(v > 0)) continue;
         add(spread, v * solid);
         greatest[0] = std::max(greatest[0], solid);
         clipped += 1 - solid < setup_.coupling.laws.least_fluid_fraction ? 1 : 0;

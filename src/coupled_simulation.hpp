@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -53,6 +54,9 @@ class CoupledSimulation {
     /// Sets with the fields that they need, for setups completed().
     static CoupledSetup completed(CoupledSetup setup);
 
+    /// Lets the grains come to rest without the water, if their setup says so. `before_step` (collective) is
+    /// called before each step and may throw. Throws as GrainSimulation::step() does. Collective.
+    void settle(const std::function<void()>& before_step);
     /// Takes away the water that is where grains are, and makes the first evaluation. Collective.
     void start();
     /// Goes on from a checkpoint. Collective.
@@ -100,7 +104,7 @@ class CoupledSimulation {
     Decomposition immersed_cells_;
     SparseExchange exchange_;
     double last_step_ = 0;  ///< time over which grains have moved since the last exchange [s]
-    bool starting_ = false;
+    bool starting_ = false, settled_ = false;
     std::uint64_t pairs_ = 0;
 };
 

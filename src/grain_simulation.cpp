@@ -81,7 +81,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
         for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
                  &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
             grains_.add(*info);
-    if (!setup_.fluid_cells) decomposition_.divide(grains_, *grid_);
+    if (!setup_.fluid_cells || setup_.settling) decomposition_.divide(grains_, *grid_);
     if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
 }
 

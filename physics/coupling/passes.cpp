@@ -134,16 +134,16 @@ void for_each_own(const ParticleSet& set, const CellTable& cells, const Particle
 }
 
 /// For each own grain: begin(i), pair(a, weight) for each image and fluid particle in reach, end(i). Returns
-/// the pairs.
+/// the pairs. `with_walls`: those of walls, too.
 template <class Begin, class Pair, class End>
-std::uint64_t for_each_grain(const Mixture& m, const Spreading& spreading, Begin&& begin, Pair&& pair,
-                             End&& end) {
+std::uint64_t for_each_grain(const Mixture& m, const Spreading& spreading, bool with_walls, Begin&& begin,
+                             Pair&& pair, End&& end) {
     const double* volume = m.fluid.data(of::quadrature_volume);
     Places near;
     Reached reached;
     std::vector<dem::Vector3<>> images;
     const auto append = [&](std::uint32_t a, const dem::Vector3<>& place) {
-        if (volume[a] > 0) near.append(place, a);
+        if (with_walls || volume[a] > 0) near.append(place, a);
     };
     with_weight(spreading, [&](const auto& weight) {
         for_each_own(m.grains, m.grain_cells, m.fluid, m.fluid_cells, m.reach, spreading.radius, near, append,
@@ -189,24 +189,39 @@ std::uint64_t for_each_fluid(const Mixture& m, const Spreading& spreading, Begin
 
 std::uint64_t sum_weights(const Mixture& mixture, const Spreading& spreading) {
     const double* volume = mixture.fluid.data(of::quadrature_volume);
-    double *sums = mixture.grains.data(of::kernel_sum), sum = 0;
-    return for_each_grain(
-        mixture, spreading, [&](std::uint32_t) { sum = 0; },
+    double *sums = mixture.grains.data(of::kernel_sum), *wet = mixture.grains.data(of::wet_share);
+    Spreading itself = spreading;
+    itself.planes.clear();
+    double sum = 0, of_walls = 0;
+    const std::uint64_t pairs = for_each_grain(
+        mixture, itself, true, [&](std::uint32_t) { sum = of_walls = 0; },
+        [&](std::uint32_t a, double weight) {
+            (volume[a] > 0 ? sum : of_walls) += std::abs(volume[a]) * weight;
+        },
+        [&](std::uint32_t i) {
+            sums[i] = sum;
+            wet[i] = spreading.wet_share(of_walls < 1 ? sum / (1 - of_walls) : 0.0);
+        });
+    if (spreading.planes.empty()) return pairs;
+    return pairs + for_each_grain(
+        mixture, spreading, false, [&](std::uint32_t) { sum = 0; },
         [&](std::uint32_t a, double weight) { sum += volume[a] * weight; },
-        [&](std::uint32_t i) { sums[i] = sum; });
+        [&](std::uint32_t i) {
+            sums[i] = sum;
+            wet[i] = std::max(wet[i], spreading.wet_share(sum));
+        });
 }
 
 std::uint64_t spread_volume(const Mixture& mixture, const Spreading& spreading, VolumeFraction kind,
-                            const Field<double>& fraction) {
-    const double *radius = mixture.grains.data(field::radius), *sums = mixture.grains.data(of::kernel_sum);
+                   const Field<double>& fraction) {
+    const double *radius = mixture.grains.data(field::radius), *sums = mixture.grains.data(of::kernel_sum),
+                 *wet = mixture.grains.data(of::wet_share);
     Spreading used = spreading;
     if (kind == VolumeFraction::raw) used.planes.clear();
     std::vector<double> spread(mixture.grains.size_with_halo());  // of each weight
     for (std::size_t i = 0; i < spread.size(); ++i) {
         const double ball = 4.0 / 3 * std::numbers::pi * radius[i] * radius[i] * radius[i];
-        spread[i] = kind == VolumeFraction::raw ? ball
-                    : sums[i] > 0               ? ball * spreading.wet_share(sums[i]) / sums[i]
-                                                : 0.0;
+        spread[i] = kind == VolumeFraction::raw ? ball : sums[i] > 0 ? ball * wet[i] / sums[i] : 0.0;
     }
     double *to = mixture.fluid.data(fraction), sum = 0;
     return for_each_fluid(
@@ -258,7 +273,7 @@ std::uint64_t gather(const Mixture& mixture, const Spreading& spreading, const F
     LinearFit fit;
     std::uint32_t grain = 0;
     return for_each_grain(
-        mixture, spreading,
+        mixture, spreading, false,
         [&](std::uint32_t i) {
             now = {};
             fit = {};

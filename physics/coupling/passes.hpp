@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -20,15 +21,13 @@ struct Spreading {
     enum class Shape : std::uint8_t { wendland, mollifier };
     Shape shape = Shape::wendland;
     double radius = 0;  ///< beyond which no weight is [m]
-    /// Grains with a smaller kernel sum are partly out of the fluid: they count with S_i/least_sum of their
-    /// volume.
-    double least_sum = 0.5;
+    /// Share of the room around a grain that fluid fills, from which on the grain counts wholly; of less, in
+    /// proportion. At a flat free surface half is filled.
+    double full = 0.85;
     /// Walls behind which grains have images; no fluid particle that counts is behind one.
     std::vector<MirrorPlane> planes = {};
 
-    double wet_share(double kernel_sum) const {
-        return kernel_sum < least_sum ? kernel_sum / least_sum : 1.0;
-    }
+    double wet_share(double filled) const { return std::min(filled / full, 1.0); }
 };
 
 /// Grains and fluid on one grid, both with copies of all that is within Spreading::radius of own particles.
@@ -41,8 +40,10 @@ struct Mixture {
     int reach;  ///< in cells, of Spreading::radius
 };
 
-/// kernel_sum of the own grains. Reads quadrature_volume and position of the fluid. This and what follows
-/// return how many pairs of a grain or an image and a fluid particle they weighed.
+/// kernel_sum and wet_share of the own grains. Reads quadrature_volume and position of the fluid. The room
+/// that is filled is the fluid's share of what walls leave, or that with images if it is more: no wall is a
+/// dry place. This and what follows return how many pairs of a grain or an image and a fluid particle they
+/// weighed.
 std::uint64_t sum_weights(const Mixture& mixture, const Spreading& spreading);
 
 /// Which solid fraction is meant: `normalised`: sum_i V_i w_ia/S_i, whose integral is the volume of the

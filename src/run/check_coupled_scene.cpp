@@ -31,6 +31,8 @@ int check_coupled_scene(const Communicator& comm, const Scene& scene) {
         setup.greatest_diameter, comm.size());
     fmt::print("grains are spread over {:.4g} m and leave at least {:.3g} of the volume to the water\n",
                setup.coupling.spreading.radius, totals.least_fluid_fraction);
+    if (setup.grains.simulation.settling)
+        fmt::print("grains settle before the start, which is not counted below\n");
     const double steps = setup.water.output.end_time / first_step;
     fmt::print("first time step: {:.4g} s, {} of the grains; {:.0f} such steps to {} s\n", first_step,
                std::lround(first_step / simulation.grains().time_step()), std::ceil(steps),

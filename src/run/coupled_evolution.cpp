@@ -32,13 +32,16 @@ std::vector<std::string> CoupledEvolution::warnings() const {
     return found;
 }
 
-void CoupledEvolution::create(const std::function<void()>&) {
-    simulation_.emplace(comm_, setup_.simulation(), make_water(comm_, setup_.water),
+void CoupledEvolution::create(const std::function<void()>& check_stop) {
+    CoupledSetup setup = setup_.simulation();
+    const bool settles = check_stop && setup_.grains.simulation.settling;
+    if (settles) setup.grains.settling = setup_.grains.simulation.settling;
+    simulation_.emplace(comm_, std::move(setup), make_water(comm_, setup_.water),
                         make_grains(comm_, setup_.grains));
+    if (settles) simulation_->settle(check_stop);
 }
 
 void CoupledEvolution::start() {
-    constexpr double most_overlap = 0.2;  // of the smaller radius
     simulation_->start();
     const double least = setup_.coupling.laws.least_fluid_fraction;
     if (const CouplingTotals t = simulation_->totals(); t.least_fluid_fraction < least)
@@ -47,11 +50,7 @@ void CoupledEvolution::start() {
                                   "denser than grains pack; allowed: at least "
                                   "coupling.least_fluid_fraction = {:.3g}",
                                   t.least_fluid_fraction, least));
-    if (const double overlap = simulation_->grains().totals().greatest_overlap; overlap > most_overlap)
-        scene_.root().error("grains",
-                            fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; "
-                                        "allowed: {}",
-                                        overlap, most_overlap));
+    refuse_first_overlap(scene_, simulation_->grains().totals().greatest_overlap);
     scene_.finish();
 }
 

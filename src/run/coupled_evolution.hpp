@@ -17,12 +17,14 @@ class CoupledEvolution : public Evolution {
     const OutputPlan& output() const override { return setup_.water.output; }
     double end_time() const override { return end_time_; }
     std::vector<std::string> warnings() const override;
+    /// Grains settle only if there is a `check_stop`.
     void create(const std::function<void()>& check_stop) override;
     ReadCheckpoint read(const std::filesystem::path& what,
                         const std::filesystem::path& output_folder) override;
     void start() override;
     void resume(const RunState& state) override;
     void step() override { simulation_->step(); }
+    std::vector<std::string> news() override { return simulation_->grains().take_notes(); }
     double time() const override { return simulation_->water().time(); }
     double time_step() const override { return simulation_->water().time_step(); }
     std::uint64_t step_count() const override { return simulation_->water().step_count(); }

@@ -10,6 +10,7 @@
 #include "io/checkpoint.hpp"
 #include "src/flow/contact_set.hpp"
 #include "src/run/flow_columns.hpp"
+#include "src/run/scene_checks.hpp"
 #include "src/setup/wall_reader.hpp"
 
 namespace talus {
@@ -48,7 +49,6 @@ std::vector<std::string> GrainEvolution::warnings() const {
 }
 
 void GrainEvolution::create(const std::function<void()>&) {
-    constexpr double most = 0.2;  // of the smaller radius
     ParticleSet grains = make_grains(comm_, setup_);
     if (setup_.shrinks_overlapping) {
         shrunk_ = shrink_overlapping(comm_, setup_.simulation.box, grains);
@@ -64,11 +64,7 @@ void GrainEvolution::create(const std::function<void()>&) {
     simulation_.emplace(comm_, setup_.simulation, std::move(grains));
     simulation_->start();
     first_overlap_ = simulation_->totals().greatest_overlap;
-    if (first_overlap_ > most)
-        scene_.root().error(
-            "grains",
-            fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; allowed: {}",
-                        first_overlap_, most));
+    refuse_first_overlap(scene_, first_overlap_);
     const double stable = simulation_->stable_step_of_bonds();
     if (simulation_->time_step() > stable)
         scene_.root().section("dem").error(

@@ -43,4 +43,13 @@ void refuse_short_box(const Scene& scene, const Box& box, double radius) {
     scene.finish();
 }
 
+void refuse_first_overlap(const Scene& scene, double greatest_overlap) {
+    constexpr double most = 0.2;  // of the smaller radius
+    if (greatest_overlap > most)
+        scene.root().error(
+            "grains",
+            fmt::format("they overlap at the start, by up to {:.3g} of the smaller radius; allowed: {}",
+                        greatest_overlap, most));
+}
+
 }  // namespace talus

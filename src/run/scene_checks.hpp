@@ -16,5 +16,7 @@ void check_snapshots(const Scene& scene, const OutputPlan& output, double end_ti
 void check_box(const Scene& scene, const Simulation& simulation);
 /// The same of any model: `radius` is how far its particles reach [m].
 void refuse_short_box(const Scene& scene, const Box& box, double radius);
+/// Records in the scene that grains overlap at the start by more than contacts bear, if they do.
+void refuse_first_overlap(const Scene& scene, double greatest_overlap);
 
 }  // namespace talus

@@ -103,7 +103,7 @@ void read_coupling(const Section& root, CoupledScene& scene) {
 /// What neither family of models knows of the other.
 void refuse_together(const Section& root, const CoupledScene& scene) {
     const GrainSetup& grains = scene.grains.simulation;
-    for (const char* name : {"source", "sink", "settle", "bond", "gravity"})
+    for (const char* name : {"source", "sink", "bond", "gravity"})
         if (root.has(name)) root.error(name, "does not go with grains in water");
     if (!scene.water.simulation.open.buffers.empty())
         root.error("body", "inflows and outflows of water do not go with grains in it");
@@ -163,7 +163,7 @@ CoupledScene read_coupled_scene(const Communicator& comm, const Scene& scene) {
     judge_resolution(coupled);
     const CoupledSetup completed = CoupledSimulation::completed(coupled.simulation());
     coupled.water.simulation = completed.water;
-    coupled.grains.simulation = completed.grains;
+    coupled.grains.simulation.fluid_cells = completed.grains.fluid_cells;
     return coupled;
 }
 

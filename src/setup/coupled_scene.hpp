@@ -19,7 +19,12 @@ struct CoupledScene {
     double greatest_diameter = 0;  ///< of the grains [m]
     std::vector<std::string> warnings{};
 
-    CoupledSetup simulation() const { return {water.simulation, grains.simulation, coupling}; }
+    /// With grains that have settled, if they shall.
+    CoupledSetup simulation() const {
+        GrainSetup settled = grains.simulation;
+        settled.settling.reset();
+        return {water.simulation, settled, coupling};
+    }
 };
 
 /// Whether the scene is one of both: it has a table [water] and [[grains]].

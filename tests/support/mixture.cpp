@@ -52,7 +52,7 @@ MixtureSample::MixtureSample(const Choice& choice, const std::vector<PlacedSpher
              &of::shared_fraction, &of::pair_acceleration, &of::grain_acceleration})
         fluid.add(*info);
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
-             &field::velocity, &field::radius, &of::kernel_sum, &of::exchanged_force})
+             &field::velocity, &field::radius, &of::kernel_sum, &of::wet_share, &of::exchanged_force})
         grains.add(*info);
     place_fluid(choice, comm, fluid);
     for (std::size_t k = 0; k < spheres.size(); ++k) {
@@ -83,7 +83,7 @@ MixtureSample::MixtureSample(const Choice& choice, const std::vector<PlacedSpher
 
 void MixtureSample::find_fractions(coupling::VolumeFraction kind) {
     coupling::sum_weights(mixture(), spreading);
-    refresh_grains({&of::kernel_sum});
+    refresh_grains({&of::kernel_sum, &of::wet_share});
     coupling::spread_volume(mixture(), spreading, kind, of::solid_fraction);
     coupling::spread_volume(mixture(), spreading, coupling::VolumeFraction::normalised, of::shared_fraction);
     refresh_fluid({&of::solid_fraction, &of::shared_fraction});

@@ -80,8 +80,7 @@ void exchange(MixtureSample& sample, const ExchangeLaws& laws, double time_step)
         const double radius = sample.grains.data(field::radius)[i], mass = grain_density * volume(radius);
         const MovingGrain grain{radius, mass, false, velocity[i], {}, {}};
         const dem::Vector3<> f =
-            mean_force(laws, grain, around[i],
-                       sample.spreading.wet_share(sample.grains.data(of::kernel_sum)[i]), time_step);
+            mean_force(laws, grain, around[i], sample.grains.data(of::wet_share)[i], time_step);
         force.put(i, f);
         velocity.put(i, velocity[i] + (time_step / mass) * f);
     }

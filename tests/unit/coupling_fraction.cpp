@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "domain/random.hpp"
 #include "tests/support/mixture.hpp"
@@ -70,7 +71,7 @@ TEST(VolumeFraction, NormalisedKeepsVolume) {
             const Box box = box_of({4, 4, 3}, boundary);
             MixtureSample sample({.box = box, .spacing = 0.4, .jitter = jitter, .spreading = {.radius = 1.0}},
                                  random_grains(300, box));
-            sample.spreading.least_sum = 0.05;  // no grain counts as partly dry
+            sample.spreading.full = 0.05;  // no grain counts as partly dry
             sample.find_fractions();
             EXPECT_NEAR(sample.integral(of::solid_fraction) / sample.grain_volume(), 1, 1e-13);
         }
@@ -171,6 +172,24 @@ TEST(VolumeFraction, ImagesKeepItEvenAtWalls) {
         } else
             EXPECT_GT(worst, 0.2);
     }
+}
+
+// Grains on a lattice that stands out of the fluid: at its surface it has about the fraction of the bulk. Of
+// a continuum, by quadrature, 1.162 of it at most and a layer of 0.072 R too many.
+TEST(VolumeFraction, BedThatStandsOutOfTheFluid) {
+    constexpr double spacing = 0.125, radius = 0.05, depth = 2.5;
+    const Box box = box_of({2.5, 2.5, depth}, {Boundary::periodic, Boundary::periodic, Boundary::open}),
+              bed = box_of({2.5, 2.5, depth + 1.5}, open);
+    const double bulk = 4.0 / 3 * std::numbers::pi * std::pow(radius / spacing, 3);
+    coupling::Spreading spreading{.radius = 1.0};
+    spreading.planes.push_back({{0, 0, 0}, {0, 0, 1}});
+    MixtureSample sample({.box = box, .spacing = 0.25, .spreading = spreading},
+                         lattice(bed, spacing, radius));
+    sample.find_fractions();
+    double greatest = 0;
+    for (const double alpha : sample.fluid.own(of::solid_fraction)) greatest = std::max(greatest, alpha);
+    EXPECT_NEAR(greatest / bulk, 1.162, 0.03);  // at places a quarter of R apart
+    EXPECT_NEAR(sample.integral(of::solid_fraction) / (bulk * 2.5 * 2.5), depth + 0.072, 0.02);
 }
 
 // One grain that crosses the fluid in steps of a fiftieth of its spacing: no fraction changes by more than
