@@ -24,6 +24,7 @@ struct WaterScene {
     double greatest_speed = 0;                   ///< that the scene expects [m/s]; 0: not said
     std::vector<InflowProfile> profiles{};       ///< one a body; of those that are inflows
     std::vector<WaterGauge> gauges{};
+    std::vector<std::string> warnings;           ///< what a user should know
     OutputPlan output;
     std::uint64_t seed = 0;
 
