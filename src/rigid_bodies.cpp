@@ -10,8 +10,8 @@
 #include "domain/clump_fields.hpp"
 #include "domain/rigid_fields.hpp"
 #include "domain/water_fields.hpp"
-#include "physics/dem/vectors.hpp"
 #include "physics/dem/contact_pass.hpp"
+#include "physics/dem/vectors.hpp"
 
 namespace talus {
 
@@ -58,7 +58,8 @@ void RigidBodies::move(double time, double time_step) {
         double fastest = 0;
         for (std::size_t k = 0; k < states_.size(); ++k) {
             const double turning = norm(rigid::angular_velocity(setup_.bodies[k], states_[k]));
-            fastest = std::max(fastest, norm(states_[k].velocity) + turning * setup_.bodies[k].bounding_radius);
+            fastest =
+                std::max(fastest, norm(states_[k].velocity) + turning * setup_.bodies[k].bounding_radius);
         }
         for (const dem::Wall& wall : setup_.walls) {
             const dem::WallPose pose = wall.motion.pose(time);
@@ -69,7 +70,8 @@ void RigidBodies::move(double time, double time_step) {
     }
     if (!contacts_ || !contacts_->any_near()) {
         if (contacts_) contacts_->records().clear();
-        for (std::size_t k = 0; k < states_.size(); ++k) rigid::drift(setup_.bodies[k], states_[k], time_step);
+        for (std::size_t k = 0; k < states_.size(); ++k)
+            rigid::drift(setup_.bodies[k], states_[k], time_step);
         return check(time + time_step);
     }
     constexpr double radians_a_step = 0.1;
@@ -98,12 +100,13 @@ void RigidBodies::check(double time) const {
     for (std::size_t k = 0; k < states_.size(); ++k) {
         const rigid::State& state = states_[k];
         const auto stop = [&](const std::string& what) {
-            throw AgreedError(1, fmt::format("time {} s: rigid body '{}' {}", time, setup_.bodies[k].name, what));
+            throw AgreedError(
+                1, fmt::format("time {} s: rigid body '{}' {}", time, setup_.bodies[k].name, what));
         };
         const Vector3<>&x = state.centre, &v = state.velocity, &l = state.angular_momentum,
-                       &q = state.orientation.vector;
-        for (const double value : {x.x, x.y, x.z, v.x, v.y, v.z, l.x, l.y, l.z, q.x, q.y, q.z,
-                                   state.orientation.scalar})
+              &q = state.orientation.vector;
+        for (const double value :
+             {x.x, x.y, x.z, v.x, v.y, v.z, l.x, l.y, l.z, q.x, q.y, q.z, state.orientation.scalar})
             if (!std::isfinite(value)) stop("has a state that is not finite");
         const std::array<double, 3> place{x.x, x.y, x.z};
         for (std::size_t a = 0; a < static_cast<std::size_t>(box_.dimension); ++a)
@@ -143,7 +146,8 @@ void RigidBodies::take_forces(const ParticleSet& particles) {
     for (std::size_t k = 0; k < states_.size(); ++k) {
         const auto total = [&](std::size_t c) { return sums[each * k + c].value(); };
         rigid::State& state = states_[k];
-        state.acceleration = (1 / setup_.bodies[k].mass) * Vector3<>{total(0), total(1), total(2)} +
+        const rigid::Body& body = setup_.bodies[k];
+        state.acceleration = (1 / body.mass) * (body.force + Vector3<>{total(0), total(1), total(2)}) +
                              Vector3<>{g[0], g[1], g[2]};
         state.torque = {total(3), total(4), total(5)};
     }
@@ -156,7 +160,7 @@ RigidTotals RigidBodies::totals(std::size_t k) const {
         bearing{settings_.bearing[0], settings_.bearing[1], settings_.bearing[2]};
     return {.state = state,
             .turning = rigid::angular_velocity(body, state),
-            .force = body.mass * (state.acceleration - gravity),
+            .force = body.mass * (state.acceleration - gravity) - body.force,
             .torque = state.torque,
             .kinetic_energy = rigid::kinetic_energy(body, state),
             .potential_energy = -body.mass * dot(bearing, state.centre)};
@@ -176,12 +180,18 @@ void for_each_vector(Set& set, Visit&& visit) {
     const auto column = [&](const Field<double>& field, auto member) {
         visit(dem::Vectors<Set>(set, field), member);
     };
-    column(field::position, [](auto& s) -> auto& { return s.centre; });
-    column(field::clump_velocity, [](auto& s) -> auto& { return s.velocity; });
-    column(field::clump_angular_momentum, [](auto& s) -> auto& { return s.angular_momentum; });
-    column(field::orientation_vector, [](auto& s) -> auto& { return s.orientation.vector; });
-    column(field::clump_acceleration, [](auto& s) -> auto& { return s.acceleration; });
-    column(field::clump_torque, [](auto& s) -> auto& { return s.torque; });
+    column(
+        field::position, [](auto& s) -> auto& { return s.centre; });
+    column(
+        field::clump_velocity, [](auto& s) -> auto& { return s.velocity; });
+    column(
+        field::clump_angular_momentum, [](auto& s) -> auto& { return s.angular_momentum; });
+    column(
+        field::orientation_vector, [](auto& s) -> auto& { return s.orientation.vector; });
+    column(
+        field::clump_acceleration, [](auto& s) -> auto& { return s.acceleration; });
+    column(
+        field::clump_torque, [](auto& s) -> auto& { return s.torque; });
 }
 
 }  // namespace
@@ -196,7 +206,8 @@ ParticleSet RigidBodies::empty_states() {
 }
 
 ParticleSet RigidBodies::empty_contacts(const RigidSetup& setup) {
-    return dem::empty_contacts(3, setup.laws ? dem::history_fields(*setup.laws) : std::vector<const FieldInfo*>{});
+    return dem::empty_contacts(
+        3, setup.laws ? dem::history_fields(*setup.laws) : std::vector<const FieldInfo*>{});
 }
 
 ParticleSet RigidBodies::saved_states() const {

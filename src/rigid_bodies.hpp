@@ -19,8 +19,8 @@ namespace talus {
 
 /// The rigid bodies of a scene: what it says, resolved.
 struct RigidSetup {
-    std::vector<rigid::Body> bodies;  ///< none: the scene has none
-    std::vector<rigid::State> states;  ///< at time 0, without forces
+    std::vector<rigid::Body> bodies;       ///< none: the scene has none
+    std::vector<rigid::State> states;      ///< at time 0, without forces
     std::optional<dem::AnyLawTable> laws;  ///< of contacts; none: bodies pass through each other
     std::vector<dem::Wall> walls;          ///< that they meet
 };
@@ -28,8 +28,8 @@ struct RigidSetup {
 /// What a rigid body does, for records.
 struct RigidTotals {
     rigid::State state;
-    dem::Vector3<> turning;         ///< angular velocity [rad/s]
-    dem::Vector3<> force, torque;   ///< of the water
+    dem::Vector3<> turning;                           ///< angular velocity [rad/s]
+    dem::Vector3<> force, torque;                     ///< of the water
     double kinetic_energy = 0, potential_energy = 0;  ///< [J], in even gravity from the origin
 };
 

@@ -25,6 +25,7 @@ struct Body {
     std::string name;
     std::uint8_t index = 0;  ///< among the bodies of the scene
     double mass = 0;         ///< [kg]
+    Vector3<> force;         ///< on it besides those of water, gravity and contacts [N]
     Vector3<> inertia;       ///< principal moments [kg m2]
     double area = 0;         ///< of its surface [m2]
     std::uint64_t first_id = 0;

@@ -127,10 +127,13 @@ std::vector<Contacts::Touch> Contacts::find_touches(const Table& table, const Gr
             find_wall_contacts(wall, pose, moving.centre + arm, radius, law.reach(radius), found);
             for (const dem::WallContact& contact : found)
                 touches.push_back(
-                    {a.spheres[s].id, dem::wall_key(group.other, contact.place), contact.place,
+                    {a.spheres[s].id,
+                     dem::wall_key(group.other, contact.place),
+                     contact.place,
                      wall_kinematics(contact.normal, contact.overlap, grain(a, moving, turning, arm, radius),
                                      contact.wall_velocity, pose.angular_velocity, 0.0),
-                     contact.point - moving.centre, {}});
+                     contact.point - moving.centre,
+                     {}});
         }
         return touches;
     }
@@ -162,9 +165,9 @@ std::vector<Load> Contacts::loads(std::span<const State> states, double time, do
         using Law = typename std::decay_t<decltype(table)>::Law;
         static_assert(Law::history_count <= dem::most_history);
         for (const Group& group : groups_) {
-            const auto& law = table.pairs(bodies_[group.body].material, group.at_wall
-                                                                            ? walls_[group.other].material
-                                                                            : bodies_[group.other].material);
+            const auto& law =
+                table.pairs(bodies_[group.body].material,
+                            group.at_wall ? walls_[group.other].material : bodies_[group.other].material);
             const std::vector<Touch> touches = find_touches(table, group, states, poses);
             for (const Touch& touch : touches) {
                 const auto together = std::ranges::count(touches, touch.part, &Touch::part);
@@ -200,7 +203,8 @@ double Contacts::greatest_frequency() const {
         for (const Group& group : groups_) {
             const Body& a = bodies_[group.body];
             const double r = a.spheres[group.spheres.front()[0]].radius,
-                         q = group.at_wall ? r : bodies_[group.other].spheres[group.spheres.front()[1]].radius;
+                         q = group.at_wall ? r
+                                           : bodies_[group.other].spheres[group.spheres.front()[1]].radius;
             dem::ContactKinematics<double> k{};
             k.effective_radius = group.at_wall ? r : r * q / (r + q);
             k.overlap = tested_overlap * std::min(r, q);
@@ -208,9 +212,8 @@ double Contacts::greatest_frequency() const {
             const auto& law = table.pairs(
                 a.material, group.at_wall ? walls_[group.other].material : bodies_[group.other].material);
             const auto response = law.elasticity(k, 1.0);
-            const double stiffness =
-                static_cast<double>(group.spheres.size()) *
-                (1.5 * response.normal_stiffness + 2 * response.tangential_stiffness);
+            const double stiffness = static_cast<double>(group.spheres.size()) *
+                                     (1.5 * response.normal_stiffness + 2 * response.tangential_stiffness);
             const auto add = [&](const Body& body, std::uint32_t at) {
                 const double arm = body.bounding_radius,
                              least = std::min({body.inertia.x, body.inertia.y, body.inertia.z});

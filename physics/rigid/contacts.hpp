@@ -54,7 +54,7 @@ class Contacts {
     struct Group {
         std::uint32_t body, other;  ///< `other`: a body, or a wall
         bool at_wall;
-        Vector3<> image;  ///< added to the centre of the second body
+        Vector3<> image;                                    ///< added to the centre of the second body
         std::vector<std::array<std::uint32_t, 2>> spheres;  ///< of the first, of the second
     };
     struct Touch;

@@ -57,7 +57,8 @@ class BufferPass {
                 const double q = std::sqrt(r2) * inverse, x = std::max(1 - q, 0.0);
                 const double weight = x * x * x * x * (1 + 4 * q);
                 front.weight += weight;
-                front.pressure += weight * rho0 * (c0 * c0 * static_cast<double>(partner_pressure_[k]) + depth);
+                front.pressure +=
+                    weight * rho0 * (c0 * c0 * static_cast<double>(partner_pressure_[k]) + depth);
                 front.speed += weight * c0 * static_cast<double>(partner_v_[axis][k]);
             }
         if (front.weight == 0) return front;
@@ -116,12 +117,11 @@ void prepare_buffers(ParticleSet& particles, std::span<const Buffer> buffers) {
     }
 }
 
-std::vector<std::uint64_t> buffer_pass(ParticleSet& particles, const CellTable& table, const Settings& settings,
-                                       std::span<const Buffer> buffers) {
+std::vector<std::uint64_t> buffer_pass(ParticleSet& particles, const CellTable& table,
+                                       const Settings& settings, std::span<const Buffer> buffers) {
     const auto run = [&](auto&& pass) {
-        table.for_each_own(Cells::all, [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-            pass.visit(cell, runs);
-        });
+        table.for_each_own(Cells::all, [&pass](const CellEntry& cell, std::span<const Run> runs,
+                                               std::size_t) { pass.visit(cell, runs); });
         return pass.seeing();
     };
     if (particles.dimension() == 2) return run(BufferPass<2>(particles, settings, buffers));

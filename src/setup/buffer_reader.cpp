@@ -12,9 +12,9 @@ namespace {
 
 /// The axis and the sense in which water flows through.
 void read_direction(const Section& table, const Box& box, water::Buffer& buffer) {
-    const std::string found =
-        box.dimension == 2 ? table.choice("direction", {"+x", "-x", "+y", "-y"})
-                           : table.choice("direction", {"+x", "-x", "+y", "-y", "+z", "-z"});
+    const std::string found = box.dimension == 2
+                                  ? table.choice("direction", {"+x", "-x", "+y", "-y"})
+                                  : table.choice("direction", {"+x", "-x", "+y", "-y", "+z", "-z"});
     buffer.sign = found.front() == '+' ? 1 : -1;
     buffer.axis = found.back() - 'x';
     if (box.boundary[static_cast<std::size_t>(buffer.axis)] != Boundary::open)
@@ -33,7 +33,8 @@ InflowProfile read_profile(const Section& table, const water::Buffer& buffer, in
     const std::string usual(1, "xyz"[(buffer.axis + 1) % dimension]);
     profile.across = table.choice("across", {"x", "y", "z"}, usual).front() - 'x';
     if (profile.across == buffer.axis || profile.across >= dimension)
-        table.error("across", fmt::format("is not an axis across the inflow, which is along {}", "xyz"[buffer.axis]));
+        table.error("across",
+                    fmt::format("is not an axis across the inflow, which is along {}", "xyz"[buffer.axis]));
     profile.places = table.numbers("places", "m", 0);
     profile.speeds = table.numbers("speeds", "m/s", profile.places.size());
     if (profile.places.size() < 2 || !std::is_sorted(profile.places.begin(), profile.places.end()))
@@ -50,7 +51,8 @@ double InflowProfile::speed(const Point& x) const {
     const double at = x[static_cast<std::size_t>(across)];
     if (at <= places.front()) return speeds.front();
     if (at >= places.back()) return speeds.back();
-    const auto above = static_cast<std::size_t>(std::upper_bound(places.begin(), places.end(), at) - places.begin());
+    const auto above =
+        static_cast<std::size_t>(std::upper_bound(places.begin(), places.end(), at) - places.begin());
     const double share = (at - places[above - 1]) / (places[above] - places[above - 1]);
     return (1 - share) * speeds[above - 1] + share * speeds[above];
 }
@@ -59,7 +61,8 @@ OpenEnd read_open_end(const Section& table, const Body& body, const Box& box) {
     OpenEnd end;
     const Section inflow = table.section("inflow"), outflow = table.section("outflow");
     if (!inflow.exists() && !outflow.exists()) return end;
-    if (inflow.exists() && outflow.exists()) table.error("outflow", "does not go with inflow of the same body");
+    if (inflow.exists() && outflow.exists())
+        table.error("outflow", "does not go with inflow of the same body");
     const Section& found = inflow.exists() ? inflow : outflow;
     water::Buffer& buffer = end.buffer;
     buffer.kind = inflow.exists() ? water::Buffer::Kind::inflow : water::Buffer::Kind::outflow;

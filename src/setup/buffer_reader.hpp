@@ -10,9 +10,9 @@ namespace talus {
 
 /// Speeds of an inflow by the place along another axis, linear between those given and even beyond.
 struct InflowProfile {
-    int across = 0;               ///< axis
-    std::vector<double> places;   ///< rising [m]; none: one speed
-    std::vector<double> speeds;   ///< along the direction of the inflow [m/s]
+    int across = 0;              ///< axis
+    std::vector<double> places;  ///< rising [m]; none: one speed
+    std::vector<double> speeds;  ///< along the direction of the inflow [m/s]
 
     double speed(const Point& x) const;
 };

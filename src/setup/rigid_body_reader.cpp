@@ -59,6 +59,7 @@ void RigidBodyReader::read(const Section& body, bool is_wall) {
         found.density = table.number("density", "kg/m3", {}, positive);
     found.velocity = vector_of(origin_default(table, "velocity", "m/s", dimension_));
     found.spin = vector_of(read_spin(table, dimension_));
+    found.force = vector_of(origin_default(table, "force", dimension_ == 2 ? "N/m" : "N", dimension_));
 }
 
 rigid::Body RigidBodyReader::make_body(std::size_t b, const Body& form, const BodyCensus& census,
@@ -70,6 +71,7 @@ rigid::Body RigidBodyReader::make_body(std::size_t b, const Body& form, const Bo
     body.name = form.name;
     body.index = static_cast<std::uint8_t>(b);
     body.mass = table.mass > 0 ? table.mass : table.density * census.particle_volume * count;
+    body.force = table.force;
     body.first_id = census.first_id;
     Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
     std::vector<std::pair<Point, std::uint64_t>> surface;
@@ -82,8 +84,7 @@ rigid::Body RigidBodyReader::make_body(std::size_t b, const Body& form, const Bo
         ++id;
     });
     // Of particles that are cubes of even density.
-    second = body.mass / count * second +
-             body.mass * spacing * spacing / 12 * Eigen::Matrix3d::Identity();
+    second = body.mass / count * second + body.mass * spacing * spacing / 12 * Eigen::Matrix3d::Identity();
     body.area = static_cast<double>(surface.size()) * std::pow(spacing, dimension_ - 1);
     state.centre = vector_of(census.centre_of_mass);
     state.velocity = table.velocity;
@@ -130,25 +131,24 @@ RigidSetup RigidBodyReader::make(const Communicator& comm, const Scene& scene, c
     double largest_radius = 0;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         if (!is_rigid(b)) continue;
-        const BoxShape around = bounds(bodies[b].shape, dimension_);
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t a = 0; a < static_cast<std::size_t>(dimension_); ++a)
-            least = std::min(least, around.upper[a] - around.lower[a]);
         constexpr double rounding = 1e-9;
+        const double least = thickness(bodies[b], dimension_);
         if (least < kernel_radius * (1 - rounding))
-            sections_[b].error("", fmt::format("body '{}' is {:.4g} m thick, and the kernel of the water reaches "
-                                               "{:.4g} m: water would feel water through it; allowed: at least "
-                                               "that",
-                                               bodies[b].name, least, kernel_radius));
+            sections_[b].error("",
+                               fmt::format("body '{}' is {:.4g} m thick, and the kernel of the water reaches "
+                                           "{:.4g} m: water would feel water through it; allowed: at least "
+                                           "that",
+                                           bodies[b].name, least, kernel_radius));
         constexpr double enough = 8;
         const double spacing = std::pow(census[b].particle_volume, 1.0 / dimension_);
         if (least < enough * spacing * (1 - rounding))
-            warnings.push_back(fmt::format("rigid body '{}' is {:.3g} particles across; forces of the water on it "
-                                           "are resolved from 8 to 10 on",
-                                           bodies[b].name, least / spacing));
+            warnings.push_back(
+                fmt::format("rigid body '{}' is {:.3g} particles across; forces of the water on it "
+                            "are resolved from 8 to 10 on",
+                            bodies[b].name, least / spacing));
         if (!tables_[b]->material)
-            warnings.push_back(fmt::format("rigid body '{}' names no material: it touches no other body and no wall",
-                                           bodies[b].name));
+            warnings.push_back(fmt::format(
+                "rigid body '{}' names no material: it touches no other body and no wall", bodies[b].name));
         rigid::State state;
         setup.bodies.push_back(make_body(b, bodies[b], census[b], state));
         setup.states.push_back(state);
@@ -164,10 +164,19 @@ RigidSetup RigidBodyReader::make(const Communicator& comm, const Scene& scene, c
                              *laws_, warnings);
     laws_->read_pairs();
     if (setup.walls.empty())
-        warnings.emplace_back("there is no [[wall]]: rigid bodies meet walls of particles only by the water "
-                              "between them");
+        warnings.emplace_back(
+            "there is no [[wall]]: rigid bodies meet walls of particles only by the water "
+            "between them");
     if (!scene.faulty()) setup.laws = laws_->table();
     return setup;
+}
+
+double thickness(const Body& body, int dimension) {
+    const BoxShape around = bounds(body.shape, dimension);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+        least = std::min(least, around.upper[a] - around.lower[a]);
+    return least;
 }
 
 void put_places_in_bodies(const RigidSetup& setup, ParticleSet& particles) {

@@ -12,9 +12,10 @@ namespace talus {
 
 /// What the table [body.rigid] of a body says.
 struct RigidTable {
-    double density = 0, mass = 0;  ///< one of them; 0: not given [kg/m3], [kg]
+    double density = 0, mass = 0;          ///< one of them; 0: not given [kg/m3], [kg]
     std::optional<std::uint8_t> material;  ///< of its contacts
     dem::Vector3<> velocity, spin;         ///< at the start [m/s], [rad/s]
+    dem::Vector3<> force;                  ///< besides those of water, gravity and contacts [N]
 };
 
 /// Reads the tables [body.rigid] of a scene, and once its bodies are counted makes rigid bodies of them.
@@ -34,7 +35,8 @@ class RigidBodyReader {
                     double kernel_radius, std::vector<std::string>& warnings);
 
   private:
-    rigid::Body make_body(std::size_t b, const Body& body, const BodyCensus& census, rigid::State& state) const;
+    rigid::Body make_body(std::size_t b, const Body& body, const BodyCensus& census,
+                          rigid::State& state) const;
 
     Section root_;
     int dimension_;
@@ -42,6 +44,9 @@ class RigidBodyReader {
     std::vector<std::optional<RigidTable>> tables_;
     std::vector<Section> sections_;
 };
+
+/// Least extent of a body along any axis [m].
+double thickness(const Body& body, int dimension);
 
 /// Gives own particles of rigid bodies their places in them.
 void put_places_in_bodies(const RigidSetup& setup, ParticleSet& particles);

@@ -232,6 +232,11 @@ std::vector<std::string> WaterScene::body_names() const {
     return names;
 }
 
+double WaterScene::particles_across(std::size_t body) const {
+    const int dimension = simulation.box.dimension;
+    return thickness(bodies[body], dimension) / std::pow(census[body].particle_volume, 1.0 / dimension);
+}
+
 ParticleSet empty_water(const WaterSetup& setup) {
     ParticleSet particles("water", setup.box.dimension);
     WaterSimulation::add_fields(particles, setup);

@@ -50,9 +50,10 @@ void OpenBoundaries::restore(const std::map<std::string, double>& numbers, const
         returned_[b] = {count(plan_.names[b] + ".returned_count"), stored(plan_.names[b] + ".returned_mass")};
     }
     if (first_count_ + created_ - deleted_ != there)
-        throw AgreedError(1, fmt::format("the checkpoint holds {} particles; those that the run began with, {}, "
-                                         "those created, {}, and those deleted, {}, do not come to that",
-                                         there, first_count_, created_, deleted_));
+        throw AgreedError(1,
+                          fmt::format("the checkpoint holds {} particles; those that the run began with, {}, "
+                                      "those created, {}, and those deleted, {}, do not come to that",
+                                      there, first_count_, created_, deleted_));
 }
 
 OpenBoundaries::Fate OpenBoundaries::fate_of(std::size_t body, const Point& x, int dimension) const {
@@ -78,10 +79,12 @@ OpenBoundaries::Fate OpenBoundaries::fate_of(std::size_t body, const Point& x, i
     return {};
 }
 
-OpenBoundaries::Change OpenBoundaries::apply(ParticleSet& particles, const water::Settings& settings, double time) {
+OpenBoundaries::Change OpenBoundaries::apply(ParticleSet& particles, const water::Settings& settings,
+                                             double time) {
     refuse_full(particles, settings, time);
     const std::size_t bodies = plan_.buffers.size(), created = 2 * bodies, deleted = created + 2;
-    std::vector<std::uint64_t> counts(2 * bodies + 4);  // passed, returned; created and deleted with sums of ids
+    std::vector<std::uint64_t> counts(2 * bodies +
+                                      4);  // passed, returned; created and deleted with sums of ids
     std::vector<ExactSum> masses(2 * bodies);
     std::vector<std::uint32_t> kept, followed;
     const std::uint64_t* id = particles.data(field::id);
@@ -140,7 +143,8 @@ void OpenBoundaries::stop_rates(ParticleSet& particles, std::size_t i) {
     }
 }
 
-/// Keeps some particles; those that are followed become water, and another one like each is a buffer's depth behind it.
+/// Keeps some particles; those that are followed become water, and another one like each is a buffer's depth
+/// behind it.
 void OpenBoundaries::follow(ParticleSet& particles, std::vector<std::uint32_t> kept,
                             const std::vector<std::uint32_t>& followed) const {
     const std::size_t first = kept.size();
@@ -161,30 +165,35 @@ void OpenBoundaries::follow(ParticleSet& particles, std::vector<std::uint32_t> k
     }
 }
 
-void OpenBoundaries::refuse_full(const ParticleSet& particles, const water::Settings& settings, double time) const {
+void OpenBoundaries::refuse_full(const ParticleSet& particles, const water::Settings& settings,
+                                 double time) const {
     constexpr double most = 1.1;  // of the density at rest
     double greatest = 0;
     std::size_t where = 0;
     for (std::size_t i = 0; i < particles.size(); ++i)
-        if (const std::uint8_t b = particles.data(field::body)[i]; plan_.buffers[b].kind == Kind::inflow &&
-                                                                   particles.data(field::density)[i] > greatest) {
+        if (const std::uint8_t b = particles.data(field::body)[i];
+            plan_.buffers[b].kind == Kind::inflow && particles.data(field::density)[i] > greatest) {
             greatest = particles.data(field::density)[i];
             where = b;
         }
     const bool is_full = greatest > most * settings.state.reference_density;
-    comm_.all_agree(1, is_full ? fmt::format("time {} s: '{}' pushes water into a region that is full: the density in front of it is "
-                                             "{:.4g} kg/m3, more than {} times that at rest",
-                                             time, plan_.names[where], greatest, most)
-                               : std::string());
+    comm_.all_agree(
+        1, is_full
+               ? fmt::format(
+                     "time {} s: '{}' pushes water into a region that is full: the density in front of it is "
+                     "{:.4g} kg/m3, more than {} times that at rest",
+                     time, plan_.names[where], greatest, most)
+               : std::string());
 }
 
 void OpenBoundaries::look(std::vector<std::uint64_t> seeing) {
     comm_.all_sum(std::span<std::uint64_t>(seeing));
     for (std::size_t b = 0; b < plan_.buffers.size(); ++b)
         if (plan_.buffers[b].is_open() && seeing[b] == 0)
-            notes_.push_back(fmt::format("there is no water at the face of '{}' at the start: is it where the water is, and "
-                                         "does it face it?",
-                                         plan_.names[b]));
+            notes_.push_back(fmt::format(
+                "there is no water at the face of '{}' at the start: is it where the water is, and "
+                "does it face it?",
+                plan_.names[b]));
 }
 
 std::vector<std::string> OpenBoundaries::take_notes() { return std::exchange(notes_, {}); }

@@ -42,13 +42,15 @@ class OpenBoundaries {
     struct Change {
         Decomposition::Ledger added, removed;
     };
-    /// After particles have moved: an inflow's that are through its face become water, and each is followed by another one
-    /// where it was a depth of the buffer ago, whose id is greater by the number of particles at the start; water behind the face
-    /// of an outflow becomes its; an outflow's that are out of it are deleted, and water more than half a spacing behind the face
-    /// of an inflow. Throws AgreedError (exit code 1) if an inflow pushes into a region that is full. Collective.
+    /// After particles have moved: an inflow's that are through its face become water, and each is followed
+    /// by another one where it was a depth of the buffer ago, whose id is greater by the number of particles
+    /// at the start; water behind the face of an outflow becomes its; an outflow's that are out of it are
+    /// deleted, and water more than half a spacing behind the face of an inflow. Throws AgreedError (exit
+    /// code 1) if an inflow pushes into a region that is full. Collective.
     Change apply(ParticleSet& particles, const water::Settings& settings, double time);
 
-    /// Takes note of buffers in front of which there is no water. `seeing`: this rank's from buffer_pass(). Collective.
+    /// Takes note of buffers in front of which there is no water. `seeing`: this rank's from buffer_pass().
+    /// Collective.
     void look(std::vector<std::uint64_t> seeing);
     std::vector<std::string> take_notes();
 
