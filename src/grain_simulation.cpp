@@ -135,15 +135,7 @@ void GrainSimulation::set_spins(std::span<const dem::Vector3<>> spins) {
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
-    const auto fields_of = []<class Table>(const Table&) {
-        std::vector<const FieldInfo*> fields;
-        if (Table::Law::slides) fields.push_back(&field::sliding);
-        if (Table::Law::rolls) fields.push_back(&field::rolling);
-        if (Table::Law::twists) fields.push_back(&field::twisting);
-        if (Table::Law::sticks) fields.push_back(&field::adhering);
-        return fields;
-    };
-    return std::visit(fields_of, setup.laws);
+    return dem::history_fields(setup.laws);
 }
 
 void GrainSimulation::start() {

@@ -7,6 +7,7 @@
 #include "domain/boundary.hpp"
 #include "domain/coupling_fields.hpp"
 #include "domain/water_fields.hpp"
+#include "physics/water/wall_forces.hpp"
 #include "src/step_support.hpp"
 
 namespace talus {
@@ -23,6 +24,8 @@ WaterSimulation::WaterSimulation(const Communicator& comm, WaterSetup setup, Par
       decomposition_(comm, setup_.partition) {
     decomposition_.expect(particles_);
     if (!setup_.open.buffers.empty()) open_ = std::make_unique<OpenBoundaries>(comm_, setup_.open);
+    if (!setup_.rigid.bodies.empty())
+        rigid_ = std::make_unique<RigidBodies>(comm_, setup_.rigid, setup_.box, setup_.settings);
 }
 
 void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup) {
@@ -44,6 +47,7 @@ void WaterSimulation::add_fields(ParticleSet& particles, const WaterSetup& setup
         particles.add(water_field::partner_gradient);
     }
     if (setup.settings.shifting > 0) particles.add(water_field::shift_velocity);
+    if (!setup.rigid.bodies.empty()) RigidBodies::add_fields(particles);
 }
 
 double WaterSimulation::work() const {
@@ -64,6 +68,7 @@ void WaterSimulation::arrange() {
 
 void WaterSimulation::start() {
     if (open_) open_->begin(particles_);
+    if (rigid_) rigid_->place(particles_, 0);
     arrange();
     evaluate(0, 0);
     if (open_) open_->look(seeing_);
@@ -86,6 +91,11 @@ void WaterSimulation::step() {
     sph::move_walls(particles_, walls_at(time_ + dt / 2));
     sph::drift(particles_, dt);
     water::shift(particles_, dt);
+    if (rigid_) {
+        rigid_->kick(dt / 2);
+        rigid_->move(time_, dt);
+        rigid_->place(particles_, dt / 2);
+    }
     apply_boundaries(particles_, setup_.box);
     if (open_) pass_open_ends();
     phases_.enter(Phase::decompose);
@@ -96,6 +106,7 @@ void WaterSimulation::step() {
     evaluate(dt / 2, time_ + dt);
     phases_.enter(Phase::motion);
     water::kick(particles_, dt / 2);
+    if (rigid_) rigid_->kick(dt / 2);
     time_ += dt;
     ++step_;
     conclude_step();
@@ -146,6 +157,10 @@ void WaterSimulation::evaluate(double time_ahead, double time) {
     for (std::size_t k = 0; k < cells.size(); ++k)
         pass_count_.work_of_cell[k] += pairs_worth_a_particle * (cells[k].end - cells[k].begin);
     sph::move_walls(particles_, walls);
+    if (rigid_) {
+        water::find_wall_forces(particles_, table, settings, rigid_->feels());
+        rigid_->take_forces(particles_);
+    }
     pairs_ += pass_count_.pairs;
     work_measured_ = true;
 }
@@ -155,12 +170,14 @@ std::vector<sph::WallNow> WaterSimulation::walls_at(double time) const {
     std::vector<sph::WallNow> walls(setup_.walls.size());
     for (std::size_t b = 0; b < walls.size(); ++b)
         if (setup_.walls[b]) walls[b] = sph::at_time(*setup_.walls[b], time, {g[0], g[1], g[2]});
+    if (rigid_) rigid_->complete(walls);
     return walls;
 }
 
 /// Agrees on the next time step, and that the state is finite: one reduction for both.
 void WaterSimulation::conclude_step() {
     limit_ = water::stable_time_step(particles_, setup_.settings);
+    if (rigid_ && rigid_->step_limit().time_step < limit_.time_step) limit_ = rigid_->step_limit();
     phases_.enter(Phase::wait);
     time_step_ = agreed_time_step(comm_, particles_, {time_, step_}, limit_);
 }

@@ -19,6 +19,7 @@
 #include "physics/water/passes.hpp"
 #include "physics/water/settings.hpp"
 #include "src/phases.hpp"
+#include "src/rigid_bodies.hpp"
 #include "src/water/open_boundaries.hpp"
 
 namespace talus {
@@ -32,6 +33,7 @@ struct WaterSetup {
     std::vector<std::uint8_t> records_force{};    ///< one a body, not 0: its force is; empty: of none
     PartitionMethod partition = PartitionMethod::cheapest;
     int rebalance_interval = 10;  ///< steps between looks at the imbalance
+    RigidSetup rigid;             ///< those of the walls that move freely
     bool holds_grains = false;    ///< that act on the water: CoupledSimulation
 };
 
@@ -64,6 +66,10 @@ class WaterSimulation {
     /// Goes on from a checkpoint's state and what save_numbers() added to it. Collective.
     void resume(double time, double time_step, std::uint64_t step,
                 const std::map<std::string, double>& numbers);
+
+    /// Rigid bodies; null if the scene has none. Before resume() they must be restored.
+    RigidBodies* rigid() { return rigid_.get(); }
+    const RigidBodies* rigid() const { return rigid_.get(); }
 
     /// One time step. Throws AgreedError (exit code 1) if a value is not finite or a particle was lost.
     /// Collective.
@@ -132,6 +138,7 @@ class WaterSimulation {
     std::unique_ptr<CellGrid> grid_;
     std::unique_ptr<OpenBoundaries> open_;
     std::vector<std::uint64_t> seeing_;  ///< own particles of each open end that see water
+    std::unique_ptr<RigidBodies> rigid_;
     double time_ = 0, time_step_ = 0;
     std::uint64_t step_ = 0, pairs_ = 0;
     sph::PassCount pass_count_;

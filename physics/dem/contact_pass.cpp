@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "domain/grain_fields.hpp"
+
 namespace talus::dem {
 
 double greatest_reach(const AnyLawTable& laws, double largest_radius) {
@@ -13,6 +15,18 @@ double greatest_reach(const AnyLawTable& laws, double largest_radius) {
         return reach;
     };
     return std::visit(reach_of, laws);
+}
+
+std::vector<const FieldInfo*> history_fields(const AnyLawTable& laws) {
+    const auto fields_of = []<class Table>(const Table&) {
+        std::vector<const FieldInfo*> fields;
+        if (Table::Law::slides) fields.push_back(&field::sliding);
+        if (Table::Law::rolls) fields.push_back(&field::rolling);
+        if (Table::Law::twists) fields.push_back(&field::twisting);
+        if (Table::Law::sticks) fields.push_back(&field::adhering);
+        return fields;
+    };
+    return std::visit(fields_of, laws);
 }
 
 Overload evaluate_pairs(const Evaluation& evaluation, const AnyLawTable& laws, Pairs which,

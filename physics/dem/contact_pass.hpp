@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/force_sum.hpp"
@@ -31,6 +32,9 @@ struct Overload {
     std::uint32_t first = 0, second = 0;  ///< grains as stored, or a grain and a wall
     bool behind = false;                  ///< the grain's centre is behind the wall's surface
 };
+
+/// What contacts of these laws remember, in the order of their records.
+std::vector<const FieldInfo*> history_fields(const AnyLawTable& laws);
 
 /// Greatest gap across which any pair of grains up to a radius may act [m].
 double greatest_reach(const AnyLawTable& laws, double largest_radius);

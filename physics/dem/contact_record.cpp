@@ -136,9 +136,8 @@ void save_pairs(std::vector<PairRecord<count>> records, std::span<const FieldInf
 }
 
 template <std::size_t count>
-std::vector<PairRecord<count>> read_pairs(const Communicator& comm, const ParticleSet& pairs,
-                                          std::span<const FieldInfo* const> fields,
-                                          const ParticleSet& grains) {
+std::vector<PairRecord<count>> rows_of_pairs(const ParticleSet& pairs,
+                                             std::span<const FieldInfo* const> fields) {
     std::vector<PairRecord<count>> rows(pairs.size());
     for (std::size_t k = 0; k < rows.size(); ++k)
         rows[k] = {pairs.data(field::first_id)[k], pairs.data(field::second_id)[k], {}};
@@ -146,6 +145,14 @@ std::vector<PairRecord<count>> read_pairs(const Communicator& comm, const Partic
         for (std::size_t k = 0; k < rows.size(); ++k)
             rows[k].history[place] = reinterpret_cast<const double*>(values)[k];
     });
+    return rows;
+}
+
+template <std::size_t count>
+std::vector<PairRecord<count>> read_pairs(const Communicator& comm, const ParticleSet& pairs,
+                                          std::span<const FieldInfo* const> fields,
+                                          const ParticleSet& grains) {
+    const std::vector<PairRecord<count>> rows = rows_of_pairs<count>(pairs, fields);
     // Ranks hold grains in order of id; those without any repeat the id of the next.
     const auto ids = grains.own(field::id);
     const std::uint64_t least = ids.empty() ? ~std::uint64_t{0} : *std::min_element(ids.begin(), ids.end());
@@ -172,6 +179,7 @@ template void follow_grains(const Communicator&, const Decomposition&, const Cel
                             std::vector<BondRecord>&);
 template void save_pairs(std::vector<ContactRecord>, std::span<const FieldInfo* const>, ParticleSet&);
 template void save_pairs(std::vector<BondRecord>, std::span<const FieldInfo* const>, ParticleSet&);
+template std::vector<ContactRecord> rows_of_pairs(const ParticleSet&, std::span<const FieldInfo* const>);
 template std::vector<ContactRecord> read_pairs(const Communicator&, const ParticleSet&,
                                                std::span<const FieldInfo* const>, const ParticleSet&);
 template std::vector<BondRecord> read_pairs(const Communicator&, const ParticleSet&,

@@ -72,6 +72,11 @@ template <std::size_t count>
 void save_pairs(std::vector<PairRecord<count>> records, std::span<const FieldInfo* const> fields,
                 ParticleSet& pairs);
 
+/// The records in the rows of such a set that this rank holds.
+template <std::size_t count>
+std::vector<PairRecord<count>> rows_of_pairs(const ParticleSet& pairs,
+                                             std::span<const FieldInfo* const> fields);
+
 /// The reverse: hands the rows of a checkpoint to the ranks that hold the grains they name. `grains` as they
 /// were read from it, in order of id over all ranks. Collective.
 template <std::size_t count>

@@ -168,6 +168,7 @@ void move_walls(ParticleSet& particles, std::span<const WallNow> walls) {
         const auto x = components<D>(particles, field::position);
         const auto v = components_to_write<D>(particles, field::velocity);
         for_each_wall_particle(particles, walls, [&](std::size_t i, const WallNow& wall) {
+            if (wall.moves_freely) return;
             const Vector3 velocity = wall.pose.velocity_at(vector_at<D>(x, i));
             const std::array<double, 3> all{velocity.x, velocity.y, velocity.z};
             for (int d = 0; d < D; ++d) v[d][i] = all[d];

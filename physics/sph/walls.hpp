@@ -23,6 +23,7 @@ struct Wall {
 struct WallNow {
     bool is_wall = false;  ///< false: a body of matter
     bool slips = false;
+    bool moves_freely = false;  ///< its particles have velocities of their own, not those of the pose
     dem::Vector3<> normal;
     dem::WallPose pose;
     dem::Vector3<> weight;  ///< gravity less the acceleration of the wall [m/s2]
@@ -42,7 +43,8 @@ WallNow at_time(const Wall& wall, double time, const dem::Vector3<>& gravity);
 void wall_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                std::span<const WallNow> walls);
 
-/// Gives wall particles the velocity of their wall; nothing if `walls` is empty.
+/// Gives wall particles the velocity of their wall, but not where it moves freely; nothing if `walls` is
+/// empty.
 void move_walls(ParticleSet& particles, std::span<const WallNow> walls);
 
 /// The same after an evaluation, and takes the rates from them: walls feel no forces and do not age.

@@ -73,6 +73,7 @@ void prepare_walls(ParticleSet& particles, const Settings& settings, std::span<c
         scaled[i] = 0;
         pressure[i] = 0;
         sticks[i] = wall.slips ? 0 : 1;
+        if (wall.moves_freely) continue;
         const dem::Vector3<> moves =
             unit * wall.pose.velocity_at({x[0][i], x[1][i], dimension > 2 ? x[2][i] : 0.0});
         v[0][i] = static_cast<float>(moves.x);

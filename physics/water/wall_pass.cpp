@@ -11,7 +11,6 @@ namespace talus::water {
 
 namespace {
 
-dem::Vector3<> vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 std::array<double, 3> array_of(const dem::Vector3<>& v) { return {v.x, v.y, v.z}; }
 
 /// Water in a half space as a particle of the wall sees it, `distance` from the mean place of what it sees,
@@ -33,8 +32,7 @@ class WallPass {
     WallPass(ParticleSet& particles, const Settings& settings, std::span<const sph::WallNow> walls)
         : settings_(settings),
           walls_(walls),
-          position_(sph::components<D>(particles, field::position)),
-          frame_(position_, settings.radius()),
+          frame_(sph::components<D>(particles, field::position), settings.radius()),
           body_(particles.data(field::body)),
           velocity_(sph::components_to_write<D>(particles, water_field::partner_velocity)),
           volume_(particles.data(water_field::partner_volume)),
@@ -105,9 +103,6 @@ class WallPass {
         if (total == 0) return;
         const double scale = state.reference_density * sound2 / total;
         pressure_[i] = std::max(0.0, scale * pressure.total());
-        std::array<double, 3> place{};
-        for (int d = 0; d < D; ++d) place[d] = position_[d][i];
-        const std::array<double, 3> own = array_of(wall.pose.velocity_at(vector_of(place)));
         double ratio = 1;
         if constexpr (linearly) {
             double distance2 = 0;
@@ -115,7 +110,7 @@ class WallPass {
             ratio = depth_ratio<D>(std::sqrt(distance2), 1 / settings_.radius_in_spacings);
         }
         for (int d = 0; d < D && !wall.slips; ++d)
-            velocity_[d][i] = static_cast<float>((1 + ratio) * own[d] / state.sound_speed -
+            velocity_[d][i] = static_cast<float>((1 + ratio) * static_cast<double>(velocity_[d][i]) -
                                                  ratio * velocity[d].total() / total);
         partner_pressure_[i] = static_cast<float>(pressure_[i] / (state.reference_density * sound2));
     }
@@ -127,7 +122,6 @@ class WallPass {
 
     const Settings& settings_;
     std::span<const sph::WallNow> walls_;
-    std::array<const double*, D> position_;
     LocalFrame<D> frame_;
     const std::uint8_t* body_;
     std::array<float*, D> velocity_;

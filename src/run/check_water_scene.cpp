@@ -35,6 +35,13 @@ int check_water_scene(const Communicator& comm, const Scene& scene) {
             "mud: viscosity up to {:.4g} Pa s, whose steps are at most {:.4g} s; below the yield stress it "
             "creeps at less than {:.3g} 1/s\n",
             mud->greatest_viscosity, settings.viscous_time_step(), mud->creep_rate());
+    if (const RigidBodies* rigid = evolution.simulation().rigid())
+        for (std::size_t k = 0; k < rigid->count(); ++k) {
+            const rigid::Body& body = rigid->body(k);
+            fmt::print("rigid body '{}': {:.6g} kg, {} particles, {:.3g} across, {} contact spheres\n",
+                       body.name, body.mass, setup.census[body.index].count,
+                       setup.particles_across(body.index), body.spheres.size());
+        }
     const double steps = setup.output.end_time / first_step;
     fmt::print("first time step: {:.4g} s (limited by {} at particle {}); {:.0f} such steps to {} s\n",
                first_step, evolution.simulation().step_limit().reason, evolution.simulation().step_limit().id,

@@ -52,7 +52,7 @@ void warn_of_sound(const water::Settings& settings, int dimension, std::vector<s
 }  // namespace
 
 std::vector<std::string> WaterEvolution::warnings() const {
-    std::vector<std::string> found;
+    std::vector<std::string> found = setup_.warnings;
     const water::Settings& settings = setup_.simulation.settings;
     const int dimension = setup_.simulation.box.dimension;
     if (settings.artificial_viscosity == 0) warn_of_sound(settings, dimension, found);
@@ -80,8 +80,12 @@ ReadCheckpoint WaterEvolution::read(const std::filesystem::path& what,
                                     const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
     ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
-    ParticleSet particles = empty_water(setup_.simulation);
-    found.state = read_checkpoint(comm_, found.file, {&particles});
+    ParticleSet particles = empty_water(setup_.simulation), states = RigidBodies::empty_states(),
+                contacts = RigidBodies::empty_contacts(setup_.simulation.rigid);
+    std::vector<ParticleSet*> sets{&particles};
+    const bool has_rigid = !setup_.simulation.rigid.bodies.empty();
+    if (has_rigid) sets.insert(sets.end(), {&states, &contacts});
+    found.state = read_checkpoint(comm_, found.file, sets);
     RunState wanted;
     describe(wanted);
     if (found.state.materials != wanted.materials)
@@ -90,8 +94,31 @@ ReadCheckpoint WaterEvolution::read(const std::filesystem::path& what,
             fmt::format("{}: is of the bodies {}; this scene has {}", found.file.string(),
                         fmt::join(found.state.materials, ", "), fmt::join(wanted.materials, ", ")));
     emplace(std::move(particles));
+    if (has_rigid) simulation_->rigid()->restore(states, contacts);
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     return found;
+}
+
+void WaterEvolution::start() {
+    constexpr double most_overlap = 0.2;
+    if (const RigidBodies* rigid = simulation_->rigid()) {
+        const rigid::Contacts::Overlap found = simulation_->rigid()->greatest_overlap(0);
+        if (found.share > most_overlap)
+            scene_.root().error(
+                "body",
+                fmt::format("rigid body '{}' overlaps '{}' at the start, by {:.3g} of the radius of their "
+                            "contact spheres; allowed: {}",
+                            rigid->body(found.body).name, found.with, found.share, most_overlap));
+        scene_.finish();
+    }
+    simulation_->start();
+}
+
+void WaterEvolution::save(const WriteSets& write) {
+    const RigidBodies* rigid = simulation_->rigid();
+    if (!rigid) return write({&simulation_->particles()});
+    const ParticleSet states = rigid->saved_states(), contacts = rigid->saved_contacts();
+    write({&simulation_->particles(), &states, &contacts});
 }
 
 void WaterEvolution::describe(RunState& state) const {
@@ -129,6 +156,40 @@ std::vector<SnapshotField> WaterEvolution::snapshot_fields() const {
     return fields;
 }
 
+/// Of a rigid body.
+void WaterEvolution::add_columns_of(const std::string& name, std::vector<CsvColumn>& columns) const {
+    const std::string axes = setup_.simulation.box.dimension == 2 ? "xy" : "xyz",
+                      turns = axes == "xy" ? "z" : "xyz";
+    const auto add = [&](const char* what, const std::string& along, const char* unit) {
+        for (const char axis : along) columns.push_back({fmt::format("{}_{}_{}", name, what, axis), unit});
+    };
+    add("centre", axes, "m");
+    add("velocity", axes, "m s-1");
+    add("turning", turns, "rad s-1");
+    add("force", axes, "N");
+    add("torque", turns, "N m");
+    columns.push_back({name + "_kinetic_energy", "J"});
+    columns.push_back({name + "_potential_energy", "J"});
+}
+
+void WaterEvolution::add_row_of(const RigidTotals& body, std::vector<double>& row) const {
+    const bool flat = setup_.simulation.box.dimension == 2;
+    const auto add = [&](const dem::Vector3<>& v, bool turns) {
+        if (flat && turns)
+            row.push_back(v.z);
+        else if (flat)
+            row.insert(row.end(), {v.x, v.y});
+        else
+            row.insert(row.end(), {v.x, v.y, v.z});
+    };
+    add(body.state.centre, false);
+    add(body.state.velocity, false);
+    add(body.turning, true);
+    add(body.force, false);
+    add(body.torque, true);
+    row.insert(row.end(), {body.kinetic_energy, body.potential_energy});
+}
+
 std::vector<CsvColumn> WaterEvolution::diagnostics_columns() const {
     std::vector<CsvColumn> columns{{"time", "s"},
                                    {"time_step", "s"},
@@ -148,6 +209,8 @@ std::vector<CsvColumn> WaterEvolution::diagnostics_columns() const {
         columns.push_back({fmt::format("greatest_{}", axis), "m"});
     }
     for (CsvColumn& column : record_.columns()) columns.push_back(std::move(column));
+    if (const RigidBodies* rigid = simulation_->rigid())
+        for (std::size_t k = 0; k < rigid->count(); ++k) add_columns_of(rigid->body(k).name, columns);
     return columns;
 }
 
@@ -161,6 +224,8 @@ Diagnostics WaterEvolution::diagnostics() {
     for (std::size_t a = 0; a < static_cast<std::size_t>(setup_.simulation.box.dimension); ++a)
         found.row.insert(found.row.end(), {t.momentum[a], t.least_place[a], t.greatest_place[a]});
     record_.measure(*simulation_, found.row);
+    if (const RigidBodies* rigid = simulation_->rigid())
+        for (std::size_t k = 0; k < rigid->count(); ++k) add_row_of(rigid->totals(k), found.row);
     return found;
 }
 

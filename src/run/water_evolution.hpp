@@ -20,7 +20,7 @@ class WaterEvolution : public Evolution {
     void create(const std::function<void()>& check_stop) override;
     ReadCheckpoint read(const std::filesystem::path& what,
                         const std::filesystem::path& output_folder) override;
-    void start() override { simulation_->start(); }
+    void start() override;
     void resume(const RunState& state) override {
         simulation_->resume(state.time, state.time_step, state.step, state.numbers);
     }
@@ -37,7 +37,7 @@ class WaterEvolution : public Evolution {
     void reset_counters() override { simulation_->reset_counters(); }
     double work() const override { return simulation_->work(); }
     void describe(RunState& state) const override;
-    void save(const WriteSets& write) override { write({&simulation_->particles()}); }
+    void save(const WriteSets& write) override;
     std::vector<SnapshotField> snapshot_fields() const override;
     std::vector<CsvColumn> diagnostics_columns() const override;
     Diagnostics diagnostics() override;
@@ -49,6 +49,8 @@ class WaterEvolution : public Evolution {
 
   private:
     void emplace(ParticleSet particles);
+    void add_columns_of(const std::string& name, std::vector<CsvColumn>& columns) const;
+    void add_row_of(const RigidTotals& body, std::vector<double>& row) const;
 
     const Communicator& comm_;
     const Scene& scene_;

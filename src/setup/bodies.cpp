@@ -95,6 +95,13 @@ double relative_density(const Body& body, const BodyCensus& census, const Point&
     return density_at(body.profile, std::max(least, norm(minus(x, sphere.centre)) / sphere.radius));
 }
 
+/// Whether a point of a body's packing is no particle.
+bool is_left_out(const Body& body, const Point& point, int dimension) {
+    return std::ranges::any_of(body.left_out, [&](const BodyShape& region) {
+        return contains(bounds(region, dimension), point, dimension) && contains(region, point, dimension);
+    });
+}
+
 /// Calls visit(id, position) for every particle of a body.
 template <class Visit>
 void for_each_particle(const Body& body, std::uint64_t first_id, int dimension, std::uint64_t seed,
@@ -102,6 +109,7 @@ void for_each_particle(const Body& body, std::uint64_t first_id, int dimension, 
     const RandomStream displacement{seed, RandomPurpose::positions, 0};
     std::uint64_t id = first_id;
     for_each_point(body.shape, body.cell, body.spacing, dimension, [&](const Point& point) {
+        if (is_left_out(body, point, dimension)) return;
         Point x = displaced(body, point);
         for (int a = 0; a < dimension && body.jitter > 0; ++a)
             x[static_cast<std::size_t>(a)] +=
@@ -168,7 +176,13 @@ std::vector<BodyCensus> take_census(const std::vector<Body>& bodies, int dimensi
             ++census.count;
         });
         if (census.count > 0) {
-            census.particle_volume = volume(body.shape, dimension) / static_cast<double>(census.count);
+            std::uint64_t left_out = 0;
+            if (!body.left_out.empty())
+                for_each_point(body.shape, body.cell, body.spacing, dimension, [&](const Point& point) {
+                    left_out += is_left_out(body, point, dimension) ? 1 : 0;
+                });
+            census.particle_volume =
+                volume(body.shape, dimension) / static_cast<double>(census.count + left_out);
             census.mass = body.density * census.particle_volume * static_cast<double>(census.count);
             census.centre_of_mass = plus(middle, times(1 / static_cast<double>(census.count), arms));
         }

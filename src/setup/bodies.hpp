@@ -81,6 +81,7 @@ struct Body {
     bool hydrostatic = false;                 ///< internal energy in proportion to the density, else even
     double damage = 0;                        ///< [1]
     std::optional<GeostaticStart> geostatic;  ///< none: free of stress
+    std::vector<BodyShape> left_out;          ///< regions of the shape without particles
 };
 
 /// What the particles of a body add up to.

@@ -41,10 +41,11 @@ void refuse_empty_bodies(const std::vector<Section>& tables, const std::vector<B
                             bodies[b].name, bodies[b].spacing));
 }
 
-void refuse_overlaps(const std::vector<Section>& tables, const std::vector<Body>& bodies, int dimension) {
+void refuse_overlaps(const std::vector<Section>& tables, const std::vector<Body>& bodies, int dimension,
+                     const std::function<bool(std::size_t, std::size_t)>& may) {
     for (std::size_t b = 0; b < bodies.size(); ++b)
         for (std::size_t other = 0; other < b; ++other)
-            if (overlap(bodies[other], bodies[b], dimension))
+            if (!(may && may(other, b)) && overlap(bodies[other], bodies[b], dimension))
                 tables[b].error(
                     "", fmt::format("body '{}' overlaps body '{}'", bodies[b].name, bodies[other].name));
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <vector>
 
 #include "domain/box.hpp"
@@ -18,7 +19,8 @@ void refuse_empty_bodies(const std::vector<Section>& tables, const std::vector<B
 /// Records a body that reaches out of the box where that is closed.
 void refuse_outside(const Section& table, const Body& body, const Box& box);
 
-/// Records bodies of which one has particles inside another.
-void refuse_overlaps(const std::vector<Section>& tables, const std::vector<Body>& bodies, int dimension);
+/// Records bodies of which one has particles inside another, but for pairs that `may`.
+void refuse_overlaps(const std::vector<Section>& tables, const std::vector<Body>& bodies, int dimension,
+                     const std::function<bool(std::size_t, std::size_t)>& may = {});
 
 }  // namespace talus

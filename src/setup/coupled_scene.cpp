@@ -110,6 +110,8 @@ void refuse_together(const Section& root, const CoupledScene& scene) {
     if (scene.water.simulation.settings.rheology)
         root.section("water").error(
             "rheology", "does not go with grains: their drag is that in a fluid of one viscosity");
+    if (!scene.water.simulation.rigid.bodies.empty())
+        root.error("body", "rigid bodies do not go with grains in water");
     if (!grains.clumps.empty()) root.error("grains", "clumps do not go with grains in water");
     // Where the box is periodic, each phase may feel gravity less what the mean gradient of the pressure
     // bears.

@@ -65,8 +65,9 @@ Polyhedron parse_obj_faces(const std::string& text) {
     return surface;
 }
 
-Polyhedron parse_obj(const std::string& text) {
-    Polyhedron surface = parse_obj_faces(text);
+Polyhedron parse_obj(const std::string& text) { return closed_surface(parse_obj_faces(text)); }
+
+Polyhedron closed_surface(Polyhedron surface) {
     std::erase_if(surface.triangles,
                   [](const Polyhedron::Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
     if (const std::string why = why_not_closed(surface); !why.empty()) throw ShapeError(why);

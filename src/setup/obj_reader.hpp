@@ -16,10 +16,11 @@ class ShapeError : public std::runtime_error {
 /// triangles and equal vertices made one. Throws ShapeError if the text cannot be read.
 Polyhedron parse_obj_faces(const std::string& text);
 
-/// The surface in the text of a Wavefront OBJ file, in the file's unit: polygons are cut into triangles,
-/// equal vertices made one, faces without area left out, and a surface seen from inside is turned inside out.
-/// Throws ShapeError, saying what is wrong and where, if the text cannot be read or the surface is not
-/// closed.
+/// A surface without its faces of no area, turned inside out if it is seen from inside. Throws ShapeError,
+/// saying what is wrong and where, if it is not closed.
+Polyhedron closed_surface(Polyhedron surface);
+
+/// closed_surface() of parse_obj_faces().
 Polyhedron parse_obj(const std::string& text);
 
 }  // namespace talus

@@ -9,6 +9,7 @@
 
 #include "src/setup/material_reader.hpp"
 #include "src/setup/obj_reader.hpp"
+#include "src/setup/wall_mesh_reader.hpp"
 
 namespace talus {
 
@@ -99,7 +100,7 @@ BodyShape read_mesh(const Section& table, double density, const BodyContext& con
     if (name.empty()) return harmless;
     const std::string file = find_file(context.comm, context.scene, name);
     try {
-        Polyhedron surface = parse_obj(read_shared_text(context.comm, file));
+        Polyhedron surface = closed_surface(parse_mesh_faces(file, read_shared_text(context.comm, file)));
         const VolumeIntegrals integrals = integrate(surface);
         const double scale = read_scale(table, density, integrals.volume);
         if (!std::isfinite(scale)) return harmless;  // its material is missing

@@ -50,15 +50,15 @@ Polyhedron parse_stl(const std::string& content) {
 
 }  // namespace
 
-WallMesh read_wall_mesh(const std::string& file_name, const std::string& content, double scale) {
+Polyhedron parse_mesh_faces(const std::string& file_name, const std::string& content) {
     const std::string ending = ending_of(file_name);
-    Polyhedron surface;
-    if (ending == "stl")
-        surface = parse_stl(content);
-    else if (ending == "obj")
-        surface = parse_obj_faces(content);
-    else
-        throw ShapeError(fmt::format("'.{}' is no mesh file that can be read: .stl or .obj", ending));
+    if (ending == "stl") return parse_stl(content);
+    if (ending == "obj") return parse_obj_faces(content);
+    throw ShapeError(fmt::format("'.{}' is no mesh file that can be read: .stl or .obj", ending));
+}
+
+WallMesh read_wall_mesh(const std::string& file_name, const std::string& content, double scale) {
+    Polyhedron surface = parse_mesh_faces(file_name, content);
     if (surface.triangles.empty()) throw ShapeError("has no triangles");
 
     WallMesh read;

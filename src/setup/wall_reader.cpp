@@ -22,12 +22,13 @@ constexpr double usual_smooth_angle = 0.5;  // [rad]
 
 dem::Vector3<> vector_of(const Point& p) { return {p[0], p[1], p[2]}; }
 
-dem::Vector3<> read_vector(const Section& table, std::string_view key, std::string_view unit) {
-    return vector_of(read_point(table, key, unit, 3));
+dem::Vector3<> read_vector(const Section& table, std::string_view key, std::string_view unit,
+                           int dimension = 3) {
+    return vector_of(read_point(table, key, unit, dimension));
 }
 
-dem::Vector3<> read_direction(const Section& table, std::string_view key) {
-    const dem::Vector3<> given = read_vector(table, key, "1");
+dem::Vector3<> read_direction(const Section& table, std::string_view key, int dimension = 3) {
+    const dem::Vector3<> given = read_vector(table, key, "1", dimension);
     const double length = norm(given);
     if (length > 0) return (1 / length) * given;
     table.error(key, "must have a length above 0");
@@ -35,7 +36,8 @@ dem::Vector3<> read_direction(const Section& table, std::string_view key) {
 }
 
 dem::WallShape read_plane(const Section& table, const Box& box) {
-    const dem::PlaneShape plane{read_vector(table, "point", "m"), read_direction(table, "normal")};
+    const dem::PlaneShape plane{read_vector(table, "point", "m", box.dimension),
+                                read_direction(table, "normal", box.dimension)};
     const std::array<double, 3> normal{plane.normal.x, plane.normal.y, plane.normal.z};
     for (std::size_t a = 0; a < 3; ++a)
         if (box.boundary[a] == Boundary::periodic && normal[a] != 0)
@@ -43,9 +45,15 @@ dem::WallShape read_plane(const Section& table, const Box& box) {
     return plane;
 }
 
+/// In 2D without ends along z.
 template <class Shape>
-dem::WallShape read_corners(const Section& table) {
-    const Shape shape{read_vector(table, "lower", "m"), read_vector(table, "upper", "m")};
+dem::WallShape read_corners(const Section& table, int dimension) {
+    Shape shape{read_vector(table, "lower", "m", dimension), read_vector(table, "upper", "m", dimension)};
+    if (dimension == 2) {
+        constexpr double far_away = 1e100;
+        shape.lower.z = -far_away;
+        shape.upper.z = far_away;
+    }
     if (!(shape.lower.x < shape.upper.x && shape.lower.y < shape.upper.y && shape.lower.z < shape.upper.z))
         table.error("upper", "must be above lower along every axis");
     return shape;
@@ -135,22 +143,25 @@ std::vector<dem::Wall> read_walls(const WallContext& context, GrainLawReader& la
                                   std::vector<std::string>& warnings) {
     std::vector<dem::Wall> walls;
     for (const Section& table : context.scene.root().sections("wall")) {
+        const int dimension = context.box.dimension;
         const std::string kind =
-            table.choice("kind", {"plane", "container", "block", "revolved", "mesh"}, "plane");
+            dimension == 2
+                ? table.choice("kind", {"plane", "container", "block"}, "plane")
+                : table.choice("kind", {"plane", "container", "block", "revolved", "mesh"}, "plane");
         const std::string name = table.text("name", table.path());
         refuse_same_name(table, walls, name);
         dem::WallShape shape;
         if (kind == "container")
-            shape = read_corners<dem::ContainerShape>(table);
+            shape = read_corners<dem::ContainerShape>(table, dimension);
         else if (kind == "block")
-            shape = read_corners<dem::BlockShape>(table);
+            shape = read_corners<dem::BlockShape>(table, dimension);
         else if (kind == "revolved")
             shape = read_revolved(table);
         else if (kind == "mesh")
             shape = read_sheet(table, context, name, warnings);
         else
             shape = read_plane(table, context.box);
-        const dem::WallMotion motion = read_motion(table.section("motion"), 3);
+        const dem::WallMotion motion = read_motion(table.section("motion"), dimension);
         refuse_in_periodic(table, context.box, kind, motion);
         walls.push_back({name, laws.material(table), shape, motion});
     }

@@ -10,6 +10,7 @@
 #include "src/setup/body_reader.hpp"
 #include "src/setup/body_wall_reader.hpp"
 #include "src/setup/names.hpp"
+#include "src/setup/rigid_body_reader.hpp"
 #include "src/setup/run_reader.hpp"
 #include "src/setup/shape_reader.hpp"
 
@@ -82,7 +83,7 @@ void complete_open_ends(std::uint8_t first, WaterScene& water) {
     open.spacing = water.spacing;
 }
 
-void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water) {
+void read_bodies(const Communicator& comm, const Scene& scene, double smoothing, WaterScene& water) {
     const Section root = scene.root();
     WaterSetup& setup = water.simulation;
     const Box& box = setup.box;
@@ -90,6 +91,7 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
     if (tables.empty()) root.error("body", "a scene needs at least one [[body]]");
     if (tables.size() > 255) root.error("body", "more than 255 bodies");
     water.bodies.reserve(tables.size());
+    RigidBodyReader rigid(root, box.dimension);
     for (const Section& table : tables) {
         const BodyContext context{.comm = comm,
                                   .scene = scene,
@@ -116,15 +118,24 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
         if (setup.walls.back()) end.buffer.kind = water::Buffer::Kind::wall;
         setup.open.buffers.push_back(end.buffer);
         water.profiles.push_back(std::move(end.profile));
+        rigid.read(table, setup.walls.back().has_value());
         water.surface.emplace_back();
         if (!setup.walls.back() && table.has("surface")) water.surface.back() = table.number("surface", "m");
     }
     if (!scene.faulty()) refuse_too_many_places(tables, water.bodies, box.dimension);
     if (scene.faulty()) return;
+    const auto makes_room = [&](std::size_t a, std::size_t b) {
+        return !setup.walls[a] && rigid.is_rigid(b);
+    };
+    for (std::size_t a = 0; a < tables.size(); ++a)
+        for (std::size_t b = 0; b < tables.size(); ++b)
+            if (makes_room(a, b)) water.bodies[a].left_out.push_back(water.bodies[b].shape);
     water.census = take_census(water.bodies, box.dimension, water.seed);
     refuse_empty_bodies(tables, water.bodies, water.census);
     for (std::size_t b = 0; b < tables.size(); ++b) refuse_outside(tables[b], water.bodies[b], box);
-    if (!scene.faulty()) refuse_overlaps(tables, water.bodies, box.dimension);
+    if (!scene.faulty())
+        refuse_overlaps(tables, water.bodies, box.dimension,
+                        [&](std::size_t a, std::size_t b) { return makes_room(a, b) || makes_room(b, a); });
     const auto spacing = [&](std::size_t b) {
         return std::pow(water.census[b].particle_volume, 1.0 / box.dimension);
     };
@@ -142,6 +153,10 @@ void read_bodies(const Communicator& comm, const Scene& scene, WaterScene& water
     if (water.spacing == 0 && !scene.faulty())
         root.error("body", "there is no water: all bodies are walls, inflows or outflows");
     if (!scene.faulty()) complete_open_ends(static_cast<std::uint8_t>(first), water);
+    if (rigid.any() && !scene.faulty()) {
+        const double radius = water::Settings::support() * smoothing * water.spacing;
+        setup.rigid = rigid.make(comm, scene, box, water.bodies, water.census, radius, water.warnings);
+    }
     if (std::none_of(setup.walls.begin(), setup.walls.end(),
                      [](const auto& wall) { return wall.has_value(); }))
         setup.walls.clear();
@@ -198,7 +213,7 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     const Section table = root.section("water");
     read_water(table, water);
     const double smoothing = table.number("smoothing", "1", dimension == 2 ? 2.0 : std::sqrt(3.0), {1, 4});
-    read_bodies(comm, scene, water);
+    read_bodies(comm, scene, smoothing, water);
     setup.settings.smoothing_length = smoothing * water.spacing;
     setup.settings.radius_in_spacings = water::Settings::support() * smoothing;
     if (!scene.faulty()) read_rheology(table.section("rheology"), setup.settings);
@@ -215,6 +230,11 @@ std::vector<std::string> WaterScene::body_names() const {
     std::vector<std::string> names;
     for (const Body& body : bodies) names.push_back(body.name);
     return names;
+}
+
+double WaterScene::particles_across(std::size_t body) const {
+    const int dimension = simulation.box.dimension;
+    return thickness(bodies[body], dimension) / std::pow(census[body].particle_volume, 1.0 / dimension);
 }
 
 ParticleSet empty_water(const WaterSetup& setup) {
@@ -267,6 +287,7 @@ ParticleSet make_water(const Communicator& comm, const WaterScene& scene) {
         if (scene.surface[b])
             put_weight(scene.simulation, *scene.surface[b], static_cast<std::uint8_t>(b), particles);
     if (!scene.simulation.open.buffers.empty()) put_speeds(scene, particles);
+    if (!scene.simulation.rigid.bodies.empty()) put_places_in_bodies(scene.simulation.rigid, particles);
     return particles;
 }
 

@@ -24,10 +24,13 @@ struct WaterScene {
     double greatest_speed = 0;                   ///< that the scene expects [m/s]; 0: not said
     std::vector<InflowProfile> profiles{};       ///< one a body; of those that are inflows
     std::vector<WaterGauge> gauges{};
+    std::vector<std::string> warnings;  ///< what a user should know
     OutputPlan output;
     std::uint64_t seed = 0;
 
     std::vector<std::string> body_names() const;
+    /// Of a body, where it is thinnest.
+    double particles_across(std::size_t body) const;
 };
 
 /// Whether a scene describes water.

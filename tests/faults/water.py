@@ -123,5 +123,82 @@ class Water(Case):
         self.assert_fails(talus("run", other, "--out", self.out, "--restart", "latest"), 3, r"floor \(wall\).*ground \(wall\)")
 
 
+RIGID = """
+[dem]
+law = "linear"
+stiffness = 1e4
+[materials.wood]
+density = 500
+restitution = 0.5
+friction = 0.3
+[[wall]]
+point = [0, 0]
+normal = [0, 1]
+material = "wood"
+[[body]]
+name = "block"
+shape = "box"
+lower = [0.1, 0.3]
+upper = [0.3, 0.5]
+lattice = "cubic"
+wall = "no_slip"
+[body.rigid]
+material = "wood"
+"""
+
+
+class RigidBodies(Case):
+    def check(self, old, new, *patterns, code=2):
+        self.assertIn(old, RIGID)
+        done = talus("run", self.scene(SCENE + RIGID.replace(old, new, 1)), "--out", self.out, "--set", "run.end_time=0.2")
+        self.assert_fails(done, code, *patterns)
+
+    def test_a_body_in_a_wall(self):
+        self.check("lower = [0.1, 0.3]", "lower = [0.1, -0.06]", r"body 'block' overlaps body 'floor'")
+
+    def test_a_body_in_another(self):
+        self.check("[[wall]]", """[[body]]
+name = "twin"
+shape = "box"
+lower = [0.2, 0.3]
+upper = [0.4, 0.5]
+lattice = "cubic"
+wall = "no_slip"
+rigid = { density = 500 }
+[[wall]]""", r"body 'block' overlaps body 'twin'")
+
+    def test_a_body_in_a_surface(self):
+        self.check("point = [0, 0]", "point = [0, 0.305]", r"rigid body 'block' overlaps 'wall\[0\]' at the start, by 0\.5")
+
+    def test_no_density(self):
+        rigid = '[body.rigid]\nmaterial = "wood"'
+        self.check(rigid, "rigid = { density = 0 }", r"body\[2\]\.rigid\.density = 0")
+        self.check(rigid, "rigid = { mass = -5 }", r"body\[2\]\.rigid\.mass = -5")
+        self.check(rigid, "rigid = {}", r"body\[2\]\.rigid\.density")
+
+    def test_a_thin_body(self):
+        self.check("upper = [0.3, 0.5]", "upper = [0.3, 0.34]", r"body 'block' is 0\.04 m thick.*0\.08 m")
+
+    def test_water_that_moves_freely(self):
+        self.check('wall = "no_slip"\n', "", r"body\[2\]\.rigid")
+
+    def test_a_motion(self):
+        self.check("[body.rigid]", "motion = { velocity = [1, 0] }\n[body.rigid]", r"body\[2\]\.motion")
+
+    def test_reflecting_boundaries(self):
+        self.check("[dem]", '[box]\nboundaries = ["reflecting", "open"]\nlower = [-1, -1]\nupper = [1, 1]\n[dem]', r"box\.boundaries.*rigid")
+
+    def test_a_body_that_leaves(self):
+        bounded = SCENE.replace("[water]", "[box]\nlower = [-1, -1]\nupper = [1, 1]\n[water]", 1)
+        scene = self.scene(bounded + RIGID + "velocity = [9, 0]\n")
+        done = talus("run", scene, "--out", self.out, "--set", "run.end_time=0.2")
+        self.assert_fails(done, 1, r"rigid body 'block' has left the box along x")
+
+    def test_notes(self):
+        done = talus("check", self.scene(SCENE + RIGID.replace("upper = [0.3, 0.5]", "upper = [0.2, 0.4]")), ranks=0)
+        self.assertRegex(done.stdout, r"note: rigid body 'block' is 5 particles across")
+        self.assertRegex(done.stdout, r"rigid body 'block': 5 kg, 25 particles, 5 across, 16 contact spheres")
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1] + sys.argv[4:])

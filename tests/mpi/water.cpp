@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -125,6 +126,66 @@ end_time = 1
 rebalance_interval = 2
 )";
 
+/// A cube that leans on a floor and a ball that falls on it, both half in water that falls apart, in a box
+/// that is periodic across.
+constexpr const char* bodies = R"(dimension = 3
+[box]
+boundaries = ["open", "periodic", "open"]
+lower = [-0.2, 0, -0.16]
+upper = [1, 0.4, 1]
+[water]
+greatest_speed = 3
+gravity = [0, 0, -9.81]
+artificial_viscosity = 0.05
+[dem]
+law = "linear"
+stiffness = 1e5
+[materials.wood]
+density = 500
+restitution = 0.5
+friction = 0.4
+[[body]]
+name = "water"
+shape = "box"
+lower = [0, 0, 0]
+upper = [0.32, 0.4, 0.24]
+lattice = "cubic"
+spacing = 0.04
+surface = 0.24
+[[body]]
+name = "floor"
+shape = "box"
+lower = [0, 0, -0.16]
+upper = [0.64, 0.4, 0]
+lattice = "cubic"
+wall = "free_slip"
+record_force = true
+[[body]]
+name = "cube"
+shape = "box"
+lower = [0.24, 0.08, 0]
+upper = [0.44, 0.28, 0.2]
+lattice = "cubic"
+wall = "no_slip"
+rigid = { material = "wood", spin = [0, 2, 1] }
+[[body]]
+name = "ball"
+shape = "sphere"
+centre = [0.24, 0.38, 0.3]
+radius = 0.12
+lattice = "cubic"
+wall = "free_slip"
+rigid = { material = "wood", velocity = [0.5, -3, -1] }
+[[wall]]
+kind = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+material = "wood"
+[run]
+end_time = 1
+rebalance_interval = 2
+)";
+
 /// The first as mud.
 const std::string mud = [] {
     std::string text = plane;
@@ -161,6 +222,7 @@ Outcome run(const Communicator& comm, const char* text, PartitionMethod method) 
     WaterSimulation simulation(comm, scene.simulation, make_water(comm, scene));
     simulation.start();
     for (int k = 0; k < steps; ++k) simulation.step();
+    if (const RigidBodies* rigid = simulation.rigid()) EXPECT_GT(rigid->substeps(), 1) << "bodies must touch";
     return {gather_state(comm, simulation.particles()), measured(scene, simulation)};
 }
 
@@ -184,6 +246,12 @@ TEST_P(WaterSameBits, AfterInterruption) {
     first.start();
     for (int k = 0; k < stop; ++k) first.step();
     const GatheredState saved = gather_state(world, first.particles());
+    std::optional<ParticleSet> states, contacts;
+    if (const RigidBodies* rigid = first.rigid()) {
+        states = rigid->saved_states();
+        contacts = rigid->saved_contacts();
+        EXPECT_GT(world.all_sum(contacts->size()), 4u);
+    }
     std::map<std::string, double> numbers;
     first.save_numbers(numbers);
     ParticleSet particles = empty_water(scene.simulation);
@@ -193,6 +261,7 @@ TEST_P(WaterSameBits, AfterInterruption) {
     WaterSetup other = scene.simulation;
     other.partition = PartitionMethod::bisection;
     WaterSimulation second(world, other, std::move(particles));
+    if (states) second.rigid()->restore(*states, *contacts);
     second.resume(first.time(), first.time_step(), first.step_count(), numbers);
     for (int k = stop; k < steps; ++k) second.step();
     const Outcome after{gather_state(world, second.particles()), measured(scene, second)};
@@ -200,11 +269,12 @@ TEST_P(WaterSameBits, AfterInterruption) {
 }
 
 std::string name_of(const testing::TestParamInfo<const char*>& scene) {
-    constexpr std::array names{"plane", "space", "channel", "mud"};
+    constexpr std::array names{"plane", "space", "channel", "mud", "bodies"};
     return names[scene.index];
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space, channel, mud.c_str()), name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space, channel, mud.c_str(), bodies),
+                         name_of);
 
 /// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that
 /// has it.

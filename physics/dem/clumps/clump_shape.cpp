@@ -1,10 +1,11 @@
 #include "physics/dem/clumps/clump_shape.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "physics/dem/clumps/principal_axes.hpp"
 
 namespace talus::dem {
 
@@ -95,14 +96,11 @@ ClumpShape clump_shape(std::span<const Vector3<>> centres, std::span<const doubl
         overlap(centres, radii) ? of_union(centres, radii, lines) : of_separate_spheres(centres, radii);
     const Eigen::Vector3d middle = all.first / all.volume;
     const Eigen::Matrix3d about = all.second - all.volume * middle * middle.transpose();
-    const Eigen::Matrix3d inertia = about.trace() * Eigen::Matrix3d::Identity() - about;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
-    Eigen::Matrix3d axes = solver.eigenvectors();
-    if (axes.determinant() < 0) axes.col(2) = -axes.col(2);
+    const auto [moments, axes] = principal_axes(about);
     ClumpShape shape{.centres = {},
                      .radii = {radii.begin(), radii.end()},
                      .volume = all.volume,
-                     .inertia = {solver.eigenvalues()[0], solver.eigenvalues()[1], solver.eigenvalues()[2]},
+                     .inertia = {moments[0], moments[1], moments[2]},
                      .bounding_radius = 0,
                      .extent = 0};
     for (std::size_t k = 0; k < radii.size(); ++k) {
