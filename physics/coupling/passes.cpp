@@ -204,16 +204,16 @@ std::uint64_t sum_weights(const Mixture& mixture, const Spreading& spreading) {
         });
     if (spreading.planes.empty()) return pairs;
     return pairs + for_each_grain(
-        mixture, spreading, false, [&](std::uint32_t) { sum = 0; },
-        [&](std::uint32_t a, double weight) { sum += volume[a] * weight; },
-        [&](std::uint32_t i) {
-            sums[i] = sum;
-            wet[i] = std::max(wet[i], spreading.wet_share(sum));
-        });
+                       mixture, spreading, false, [&](std::uint32_t) { sum = 0; },
+                       [&](std::uint32_t a, double weight) { sum += volume[a] * weight; },
+                       [&](std::uint32_t i) {
+                           sums[i] = sum;
+                           wet[i] = std::max(wet[i], spreading.wet_share(sum));
+                       });
 }
 
 std::uint64_t spread_volume(const Mixture& mixture, const Spreading& spreading, VolumeFraction kind,
-                   const Field<double>& fraction) {
+                            const Field<double>& fraction) {
     const double *radius = mixture.grains.data(field::radius), *sums = mixture.grains.data(of::kernel_sum),
                  *wet = mixture.grains.data(of::wet_share);
     Spreading used = spreading;
