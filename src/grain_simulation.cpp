@@ -11,7 +11,6 @@
 #include "domain/clump_fields.hpp"
 #include "domain/coupling_fields.hpp"
 #include "domain/grain_fields.hpp"
-#include "physics/dem/vectors.hpp"
 
 namespace talus {
 
@@ -115,25 +114,6 @@ void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
             grains.add(*info);
 }
 
-void GrainSimulation::set_fluid_accelerations(std::span<const dem::Vector3<>> accelerations) {
-    const std::uint8_t* body = grains_.data(field::body);
-    const dem::Vectors all(grains_, field::acceleration),
-        of_fluid(grains_, coupling_field::fluid_acceleration), velocity(grains_, field::velocity),
-        earlier(grains_, coupling_field::earlier_velocity);
-    for (std::size_t i = 0; i < grains_.size(); ++i) {
-        if (!setup_.held[body[i]]) all.put(i, all[i] + (accelerations[i] - of_fluid[i]));
-        of_fluid.put(i, accelerations[i]);
-        earlier.put(i, velocity[i]);
-    }
-}
-
-void GrainSimulation::set_spins(std::span<const dem::Vector3<>> spins) {
-    const std::uint8_t* body = grains_.data(field::body);
-    const dem::Vectors spin(grains_, field::angular_velocity);
-    for (std::size_t i = 0; i < grains_.size(); ++i)
-        if (!setup_.held[body[i]]) spin.put(i, spins[i]);
-}
-
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {
     return dem::history_fields(setup.laws);
 }
@@ -147,27 +127,6 @@ void GrainSimulation::start() {
     evaluate(0);
     finish(0, gravity_ ? gravity_->start(grains_, *grid_, decomposition_) : dem::Impulse{});
     if (setup_.fluid_cells) show_accelerations();
-}
-
-/// Accelerations become fields, which travel with their grains and can be saved.
-void GrainSimulation::show_accelerations() {
-    if (grains_.has(field::acceleration)) return;
-    grains_.add(field::acceleration);
-    grains_.add(field::angular_acceleration);
-    auto& columns = grains_.columns();  // in the order of add_fields()
-    const auto behind = std::ranges::find(columns, &field::radius, &Column::info);
-    std::rotate(behind, columns.end() - 2, columns.end());
-    dem::put_accelerations(sums_, grains_);
-}
-
-/// The reverse: most steps need no second place for them.
-void GrainSimulation::hide_accelerations() {
-    if (!grains_.has(field::acceleration)) return;
-    sums_.resize(grains_.size() + 1);
-    dem::put_rates(grains_, sums_);
-    std::erase_if(grains_.columns(), [](const Column& column) {
-        return column.info == &field::acceleration || column.info == &field::angular_acceleration;
-    });
 }
 
 void GrainSimulation::join_grains() {
