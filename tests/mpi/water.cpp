@@ -222,7 +222,9 @@ Outcome run(const Communicator& comm, const char* text, PartitionMethod method) 
     WaterSimulation simulation(comm, scene.simulation, make_water(comm, scene));
     simulation.start();
     for (int k = 0; k < steps; ++k) simulation.step();
-    if (const RigidBodies* rigid = simulation.rigid()) EXPECT_GT(rigid->substeps(), 1) << "bodies must touch";
+    if (const RigidBodies* rigid = simulation.rigid()) {
+        EXPECT_GT(rigid->substeps(), 1) << "bodies must touch";
+    }
     return {gather_state(comm, simulation.particles()), measured(scene, simulation)};
 }
 
