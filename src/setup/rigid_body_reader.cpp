@@ -33,6 +33,45 @@ bool is_at_surface(const BodyShape& shape, const Point& place, double step, int 
     return false;
 }
 
+/// Mean of x_a x_b over a shape, about its centre [m2].
+struct SecondMoments {
+    int dimension;
+
+    Eigen::Matrix3d operator()(const BoxShape& box) const {
+        Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+        for (int a = 0; a < dimension; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            sum(a, a) = std::pow(box.upper[axis] - box.lower[axis], 2) / 12;
+        }
+        return sum;
+    }
+    Eigen::Matrix3d operator()(const SphereShape& sphere) const {
+        const auto power = [&](int n) {
+            return std::pow(sphere.radius, n) - std::pow(sphere.inner_radius, n);
+        };
+        return power(dimension + 2) / power(dimension) / (dimension + 2) * Eigen::Matrix3d::Identity();
+    }
+    Eigen::Matrix3d operator()(const EllipsoidShape& ellipsoid) const {
+        Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+        for (std::size_t k = 0; k < static_cast<std::size_t>(dimension); ++k) {
+            const auto& rows = ellipsoid.orientation.rows;
+            const Eigen::Vector3d axis(rows[0][k], rows[1][k], rows[2][k]);
+            sum += std::pow(ellipsoid.semi_axes[k], 2) / (dimension + 2) * axis * axis.transpose();
+        }
+        return sum;
+    }
+    Eigen::Matrix3d operator()(const MeshShape& mesh) const {
+        const VolumeIntegrals& integrals = mesh.surface->integrals();
+        Eigen::Matrix3d sum;
+        for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b)
+                sum(a, b) =
+                    integrals.second_moments[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] /
+                    integrals.volume;
+        return sum;
+    }
+};
+
 }  // namespace
 
 bool RigidBodyReader::any() const {
@@ -73,18 +112,13 @@ rigid::Body RigidBodyReader::make_body(std::size_t b, const Body& form, const Bo
     body.mass = table.mass > 0 ? table.mass : table.density * census.particle_volume * count;
     body.force = table.force;
     body.first_id = census.first_id;
-    Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d second = body.mass * std::visit(SecondMoments{dimension_}, form.shape);
     std::vector<std::pair<Point, std::uint64_t>> surface;
     std::uint64_t id = census.first_id;
     for_each_point(form.shape, form.cell, form.spacing, dimension_, [&](const Point& place) {
-        const Point arm = minus(place, census.centre_of_mass);
-        const Eigen::Vector3d r(arm[0], arm[1], dimension_ > 2 ? arm[2] : 0);
-        second += r * r.transpose();
         if (is_at_surface(form.shape, place, spacing, dimension_)) surface.emplace_back(place, id);
         ++id;
     });
-    // Of particles that are cubes of even density.
-    second = body.mass / count * second + body.mass * spacing * spacing / 12 * Eigen::Matrix3d::Identity();
     body.area = static_cast<double>(surface.size()) * std::pow(spacing, dimension_ - 1);
     state.centre = vector_of(census.centre_of_mass);
     state.velocity = table.velocity;

@@ -126,8 +126,8 @@ end_time = 1
 rebalance_interval = 2
 )";
 
-/// A cube that leans on a floor and a ball that falls on it, both half in water that falls apart, in a box
-/// that is periodic across.
+/// A cube that leans on a floor and a ball that meets its image across a periodic boundary, both half in
+/// water that falls apart.
 constexpr const char* bodies = R"(dimension = 3
 [box]
 boundaries = ["open", "periodic", "open"]
@@ -163,19 +163,19 @@ record_force = true
 [[body]]
 name = "cube"
 shape = "box"
-lower = [0.24, 0.08, 0]
-upper = [0.44, 0.28, 0.2]
+lower = [0.24, 0, 0]
+upper = [0.44, 0.2, 0.2]
 lattice = "cubic"
 wall = "no_slip"
 rigid = { material = "wood", spin = [0, 2, 1] }
 [[body]]
 name = "ball"
 shape = "sphere"
-centre = [0.24, 0.38, 0.3]
+centre = [0.24, 0.28, 0.3]
 radius = 0.12
 lattice = "cubic"
 wall = "free_slip"
-rigid = { material = "wood", velocity = [0.5, -3, -1] }
+rigid = { material = "wood", velocity = [0.5, 3, -3] }
 [[wall]]
 kind = "plane"
 point = [0, 0, 0]
@@ -222,7 +222,9 @@ Outcome run(const Communicator& comm, const char* text, PartitionMethod method) 
     WaterSimulation simulation(comm, scene.simulation, make_water(comm, scene));
     simulation.start();
     for (int k = 0; k < steps; ++k) simulation.step();
-    if (const RigidBodies* rigid = simulation.rigid()) EXPECT_GT(rigid->substeps(), 1) << "bodies must touch";
+    if (const RigidBodies* rigid = simulation.rigid()) {
+        EXPECT_GT(rigid->substeps(), 1) << "bodies must touch";
+    }
     return {gather_state(comm, simulation.particles()), measured(scene, simulation)};
 }
 
@@ -250,7 +252,7 @@ TEST_P(WaterSameBits, AfterInterruption) {
     if (const RigidBodies* rigid = first.rigid()) {
         states = rigid->saved_states();
         contacts = rigid->saved_contacts();
-        EXPECT_GT(world.all_sum(contacts->size()), 4u);
+        EXPECT_GT(world.all_sum(contacts->size()), 0u);
     }
     std::map<std::string, double> numbers;
     first.save_numbers(numbers);
