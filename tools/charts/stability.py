@@ -17,9 +17,9 @@ def measure(build, quick=False):
 
 def draw(rows, plt):
     failures = list(dict.fromkeys(row["failure"] for row in rows))
-    columns = 3
+    columns = 4
     lines = -(-len(failures) // columns)
-    figure, panels = plt.subplots(lines, columns, figsize=(12, 3.4 * lines), squeeze=False, layout="constrained")
+    figure, panels = plt.subplots(lines, columns, figsize=(14, 3 * lines), squeeze=False, layout="constrained")
     for panel in panels.flat[len(failures):]:
         panel.set_visible(False)
     colours = ["#1f6fb2", "#d98e04", "#5a9e5a", "#8a6bb0", "#8c6d4f", "#333333"]
@@ -41,6 +41,8 @@ def draw(rows, plt):
         values = [row["found"] for row in chosen]
         if min(values) > 0 and max(values) > 50 * min(values):
             panel.set_yscale("log")
+        elif min(values) >= 0 and max(values) > 1e3:
+            panel.set_yscale("symlog", linthresh=0.01)
         panel.set(title=failure, xlabel=chosen[0]["knob"], ylabel=chosen[0]["metric"])
         panel.legend(fontsize=6, ncols=1 if len(scenes) < 7 else 2)
     figure.text(0.01, -0.02, "o stable, x unstable; dashed: threshold by theory", fontsize=8)
