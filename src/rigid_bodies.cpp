@@ -10,6 +10,7 @@
 #include "domain/clump_fields.hpp"
 #include "domain/rigid_fields.hpp"
 #include "domain/water_fields.hpp"
+#include "io/agree.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/vectors.hpp"
 
@@ -38,8 +39,8 @@ sph::StepLimit RigidBodies::stable_step() const {
     constexpr double share = 0.25;  // docs/decisions/028
     const double h = settings_.smoothing_length, spacing = settings_.radius() / settings_.radius_in_spacings,
                  rho = settings_.state.reference_density, c = settings_.state.sound_speed;
-    const double impedance =
-        rho * c * (1 + settings_.artificial_viscosity * h / spacing) + 2 * settings_.viscosity / spacing;
+    const double impedance = rho * c * (1 + settings_.artificial_viscosity * h / spacing) +
+                             2 * settings_.greatest_viscosity() / spacing;
     sph::StepLimit limit{std::numeric_limits<double>::infinity(), 0, "the lightness of a rigid body"};
     for (const rigid::Body& body : setup_.bodies) {
         const double step = share * 2 * box_.dimension * body.mass / (impedance * body.area);
@@ -63,7 +64,11 @@ void RigidBodies::move(double time, double time_step) {
         }
         for (const dem::Wall& wall : setup_.walls) {
             const dem::WallPose pose = wall.motion.pose(time);
-            fastest = std::max(fastest, norm(pose.velocity));
+            double swept = 0;
+            for (std::size_t k = 0; k < states_.size(); ++k)
+                swept = std::max(swept, norm(states_[k].centre - pose.centre - pose.shift) +
+                                            setup_.bodies[k].bounding_radius);
+            fastest = std::max(fastest, norm(pose.velocity) + norm(pose.angular_velocity) * swept);
         }
         constexpr double margin = 4;  // two bodies, and twice as fast after a bounce off a heavier one
         contacts_->list(states_, time, margin * fastest * time_step);
@@ -74,9 +79,15 @@ void RigidBodies::move(double time, double time_step) {
             rigid::drift(setup_.bodies[k], states_[k], time_step);
         return check(time + time_step);
     }
-    constexpr double radians_a_step = 0.1;
-    substeps_ = static_cast<int>(
-        std::clamp(std::ceil(time_step * contacts_->greatest_frequency() / radians_a_step), 1.0, 1e6));
+    constexpr double radians_a_step = 0.1, most = 1e5;
+    const double wanted =
+        std::max(std::ceil(time_step * contacts_->greatest_frequency() / radians_a_step), 1.0);
+    if (wanted > most)
+        throw AgreedError(
+            1, fmt::format("contacts of rigid bodies ask for {:.3g} steps in one of the water, more "
+                           "than {:.0e}: a lower stiffness?",
+                           wanted, most));
+    substeps_ = static_cast<int>(wanted);
     const double dt = time_step / substeps_;
     std::vector<rigid::Load> loads = contacts_->loads(states_, time, 0);
     const auto kicked = [&](std::vector<rigid::State>& states) {
@@ -244,7 +255,12 @@ void RigidBodies::restore(const ParticleSet& states, const ParticleSet& contacts
     for_each_vector(states, [&](const auto& column, auto member) {
         for (std::size_t k = 0; k < rows.size(); ++k) member(rows[k].state) = column[k];
     });
-    for (const Row& row : comm_.all_gather(std::span<const Row>(rows))) states_.at(row.id) = row.state;
+    const std::vector<Row> all = comm_.all_gather(std::span<const Row>(rows));
+    if (all.size() != states_.size())
+        throw AgreedError(exit_input_output,
+                          fmt::format("the checkpoint holds {} rigid bodies; the scene has {}", all.size(),
+                                      states_.size()));
+    for (const Row& row : all) states_[row.id] = row.state;
     if (!contacts_) return;
     const std::vector<dem::ContactRecord> records =
         dem::rows_of_pairs<dem::most_history>(contacts, dem::history_fields(*setup_.laws));

@@ -28,7 +28,7 @@ WaterTotals WaterSimulation::totals() const {
         if (!is_water(particles_.data(field::body)[i])) continue;
         ++count;
         const double m = particles_.data(field::mass)[i],
-                     rho = particles_.data(field::density)[i] / (1 - (solid ? solid[i] : 0.0));
+                     rho = particles_.data(field::density)[i] / water::share_of_water(solid ? solid[i] : 0.0);
         double speed2 = 0, height = 0;
         for (int a = 0; a < particles_.dimension(); ++a) {
             const double x = particles_.data(field::position, a)[i],

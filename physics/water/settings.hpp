@@ -69,10 +69,12 @@ struct Settings {
     double radius_in_spacings = 0;  ///< radius of interaction over the spacing of the particles [1]
 
     static constexpr double support() { return 2; }  ///< of the kernel [h]
+    /// That any of the water may have [Pa s].
+    double greatest_viscosity() const { return rheology ? rheology->greatest_viscosity : viscosity; }
     /// Longest step by viscosity, 7/8 of what is stable where velocities alternate between particles:
     /// friction damps those at a rate of 7 mu/(rho h^2) [s].
     double viscous_time_step() const {
-        const double greatest = rheology ? rheology->greatest_viscosity : viscosity;
+        const double greatest = greatest_viscosity();
         return greatest > 0 ? 0.125 * smoothing_length * smoothing_length * state.reference_density / greatest
                             : std::numeric_limits<double>::infinity();
     }

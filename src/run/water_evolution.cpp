@@ -31,7 +31,8 @@ namespace {
 /// Sound that the time step makes grow: physics/water/sound_waves.hpp, tests/stability/water.cpp.
 void warn_of_sound(const water::Settings& settings, int dimension, std::vector<std::string>& found) {
     constexpr double slow = 1e-4;  // a thousand steps then make a tenth more of it
-    const double step = settings.courant * settings.smoothing_length / settings.state.sound_speed,
+    const double step = std::min(settings.courant * settings.smoothing_length / settings.state.sound_speed,
+                                 settings.viscous_time_step()),
                  growth = water::fastest_growing(settings, dimension, step).growth;
     if (growth < 1 + slow) return;
     water::Settings diffusive = settings;
@@ -57,7 +58,7 @@ std::vector<std::string> WaterEvolution::warnings() const {
     const int dimension = setup_.simulation.box.dimension;
     if (settings.artificial_viscosity == 0) warn_of_sound(settings, dimension, found);
     for (std::size_t b = 0; b < setup_.bodies.size(); ++b)
-        if (setup_.simulation.walls[b])
+        if (!setup_.simulation.walls.empty() && setup_.simulation.walls[b])
             warn_of_thin_wall(setup_.bodies[b], settings.radius(), dimension, found);
     for (int axis = 0; axis < dimension; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
@@ -128,6 +129,8 @@ void WaterEvolution::describe(RunState& state) const {
         const char* what = is_wall ? "wall" : "water";
         if (!ends.empty() && ends[b].is_open())
             what = ends[b].kind == water::Buffer::Kind::inflow ? "inflow" : "outflow";
+        for (const rigid::Body& body : setup_.simulation.rigid.bodies)
+            if (body.index == b) what = "rigid body";
         state.materials.push_back(fmt::format("{} ({})", setup_.bodies[b].name, what));
     }
     if (simulation_) simulation_->save_numbers(state.numbers);

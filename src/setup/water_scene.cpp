@@ -119,13 +119,16 @@ void read_bodies(const Communicator& comm, const Scene& scene, double smoothing,
         setup.open.buffers.push_back(end.buffer);
         water.profiles.push_back(std::move(end.profile));
         rigid.read(table, setup.walls.back().has_value());
+        if (setup.records_force.back() && rigid.is_rigid(water.bodies.size() - 1))
+            table.error("record_force",
+                        "is of walls that are not rigid bodies; their forces are always written");
         water.surface.emplace_back();
         if (!setup.walls.back() && table.has("surface")) water.surface.back() = table.number("surface", "m");
     }
     if (!scene.faulty()) refuse_too_many_places(tables, water.bodies, box.dimension);
     if (scene.faulty()) return;
     const auto makes_room = [&](std::size_t a, std::size_t b) {
-        return !setup.walls[a] && rigid.is_rigid(b);
+        return setup.open.buffers[a].kind == water::Buffer::Kind::water && rigid.is_rigid(b);
     };
     for (std::size_t a = 0; a < tables.size(); ++a)
         for (std::size_t b = 0; b < tables.size(); ++b)

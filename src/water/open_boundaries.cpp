@@ -106,6 +106,8 @@ OpenBoundaries::Change OpenBoundaries::apply(ParticleSet& particles, const water
         } else if (fate.what == Fate::leaves) {
             body = static_cast<std::uint8_t>(fate.buffer);
             stop_rates(particles, i);
+            for (int a = 0; a < particles.dimension(); ++a)
+                if (a != plan_.buffers[fate.buffer].axis) particles.data(field::velocity, a)[i] = 0;
         } else {
             ++counts[deleted];
             counts[deleted + 1] += id[i];

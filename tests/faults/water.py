@@ -106,7 +106,7 @@ class Water(Case):
     def test_notes(self):
         # a step grows sound 1.0152 times by itself (tests/stability/water.cpp), a hundred 4.5 times
         for damping, note in (("density_diffusion = 0", r"note: sound in still water grows 4\.5 times in a hundred steps"),
-                              ("density_diffusion = 0\nartificial_viscosity = 0.02", None), ("", None)):
+                              ("density_diffusion = 0\nartificial_viscosity = 0.02", None), ("viscosity = 500", None), ("", None)):
             done = talus("check", self.scene(SCENE.replace("artificial_viscosity = 0.02", damping)), ranks=0)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             if note:
@@ -150,7 +150,7 @@ material = "wood"
 class RigidBodies(Case):
     def check(self, old, new, *patterns, code=2):
         self.assertIn(old, RIGID)
-        done = talus("run", self.scene(SCENE + RIGID.replace(old, new, 1)), "--out", self.out, "--set", "run.end_time=0.2")
+        done = talus("check", self.scene(SCENE + RIGID.replace(old, new, 1)), ranks=0)
         self.assert_fails(done, code, *patterns)
 
     def test_a_body_in_a_wall(self):
@@ -184,6 +184,24 @@ rigid = { density = 500 }
 
     def test_a_motion(self):
         self.check("[body.rigid]", "motion = { velocity = [1, 0] }\n[body.rigid]", r"body\[2\]\.motion")
+
+    def test_recorded_twice(self):
+        self.check("[body.rigid]", "record_force = true\n[body.rigid]", r"body\[2\]\.record_force")
+
+    def test_a_restart_with_another_body(self):
+        done = talus("run", self.scene(SCENE + RIGID), "--out", self.out, "--steps", 1)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        twin = """[[body]]
+name = "twin"
+shape = "box"
+lower = [0.1, 0.7]
+upper = [0.3, 0.9]
+lattice = "cubic"
+wall = "no_slip"
+rigid = { material = "wood" }
+"""
+        other = self.scene(SCENE + RIGID + twin)
+        self.assert_fails(talus("run", other, "--out", self.out, "--restart", "latest"), 3, r"block \(rigid body\).*twin \(rigid body\)")
 
     def test_reflecting_boundaries(self):
         self.check("[dem]", '[box]\nboundaries = ["reflecting", "open"]\nlower = [-1, -1]\nupper = [1, 1]\n[dem]', r"box\.boundaries.*rigid")
