@@ -37,7 +37,7 @@ void RigidBodies::add_fields(ParticleSet& particles) {
 /// below 2/dt.
 sph::StepLimit RigidBodies::stable_step() const {
     constexpr double share = 0.25;  // docs/decisions/028
-    const double h = settings_.smoothing_length, spacing = settings_.radius() / settings_.radius_in_spacings,
+    const double h = settings_.smoothing_length, spacing = settings_.spacing(),
                  rho = settings_.state.reference_density, c = settings_.state.sound_speed;
     const double impedance = rho * c * (1 + settings_.artificial_viscosity * h / spacing) +
                              2 * settings_.greatest_viscosity() / spacing;

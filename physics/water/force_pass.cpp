@@ -18,6 +18,7 @@ using sph::Vector;
 struct Terms {
     Viscosities viscosities;
     bool shifts;
+    bool cores;  // of walls
 };
 
 /// In units of the radius of interaction R, the speed of sound c0 and the density at rest rho0.
@@ -124,8 +125,9 @@ class ForcePass {
             const FloatLanes x = max(1 - distance, FloatLanes(0.0F)), x3 = x * x * x;
             const FloatLanes weight = load(from[at_volume] + k) * x3;
             const FloatLanes last = load(from[at_density] + k);  // of walls whether they do not slip
-            const FloatLanes pressure = own.pressure + load(from[at_pressure] + k),
-                             sticks = of_wall ? last : FloatLanes(1.0F);
+            FloatLanes pressure = own.pressure + load(from[at_pressure] + k);
+            if constexpr (of_wall && terms.cores) pressure += pair_force_.core_pressure(distance);
+            const FloatLanes sticks = of_wall ? last : FloatLanes(1.0F);
             Vector<FloatLanes, D> force;
             if constexpr (is_uneven && of_wall)
                 force = pair_force_(r, v, r2, pressure, sticks, own.flow);
@@ -203,7 +205,10 @@ void force_pass(ParticleSet& particles, const CellTable& table, Cells which, con
     };
     const auto with_shifting = [&]<int D, bool shifts>() {
         with_viscosities(settings, [&]<Viscosities viscosities>() {
-            run.template operator()<D, Terms{viscosities, shifts}>();
+            if constexpr (D == 3 && viscosities.laminar != Viscosity::uneven)  // all that grains are in
+                if (settings.wall_core > 0)
+                    return run.template operator()<D, Terms{viscosities, shifts, true}>();
+            run.template operator()<D, Terms{viscosities, shifts, false}>();
         });
     };
     const auto in_dimension = [&]<int D>() {

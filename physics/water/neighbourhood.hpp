@@ -114,4 +114,25 @@ inline std::size_t count_of(std::span<const Run> runs) {
     return count;
 }
 
+/// Fills a block with the water near a cell, whose `volume` is positive, walls left out: places, then what
+/// put(k, number, values) adds of particles k to k + number - 1.
+template <int D, std::size_t count, class Put>
+void gather_water(LocalFrame<D>& frame, const CellEntry& cell, std::span<const Run> runs, const float* volume,
+                  Block<count>& block, Put&& put) {
+    frame.enter(cell);
+    block.clear(count_of(runs));
+    const auto is_water = [volume](std::uint32_t k, std::size_t number) {
+        return negative_lanes(-load_first(volume + k, number));
+    };
+    frame.for_each_near(
+        runs, is_water,
+        [&](std::uint32_t k, std::size_t number, const std::array<FloatLanes, D>& x, LaneBits bits) {
+            std::array<FloatLanes, count> values;
+            std::copy(x.begin(), x.end(), values.begin());
+            put(k, number, values);
+            block.append(bits, values);
+        });
+    block.pad();
+}
+
 }  // namespace talus::water

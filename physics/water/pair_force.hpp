@@ -87,7 +87,9 @@ class PairForce {
         : damping_(static_cast<float>(settings.artificial_viscosity / Settings::support())),
           friction_(static_cast<float>(
               2 * settings.viscosity /
-              (settings.state.reference_density * settings.state.sound_speed * settings.radius()))) {}
+              (settings.state.reference_density * settings.state.sound_speed * settings.radius()))),
+          core_(static_cast<float>(settings.wall_core / settings.radius())),
+          hardness_(settings.wall_core > 0 ? hardness / core_ : 0) {}
 
     /// grad W = -kernel() x^3 r/R^(D+2).
     static double kernel() { return 5 * sph::WendlandC2<D>::norm * std::pow(Settings::support(), D + 2); }
@@ -96,6 +98,10 @@ class PairForce {
         return kernel() * settings.state.sound_speed * settings.state.sound_speed / settings.radius();
     }
 
+    /// What a particle of a wall adds to the pressure within its core.
+    FloatLanes core_pressure(const FloatLanes& distance) const {
+        return hardness_ * max(core_ - distance, FloatLanes(0.0F));
+    }
     /// What stands in the brackets; `pressure`: of both, `sticks`: 0 if the pair has no viscosity, else 1.
     sph::Vector<FloatLanes, D> operator()(const sph::Vector<FloatLanes, D>& r,
                                           const sph::Vector<FloatLanes, D>& v, const FloatLanes& r2,
@@ -126,7 +132,8 @@ class PairForce {
     }
 
   private:
-    float damping_, friction_;
+    static constexpr float hardness = 4;
+    float damping_, friction_, core_, hardness_;
 };
 
 }  // namespace talus::water

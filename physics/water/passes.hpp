@@ -41,9 +41,10 @@ void rate_pass(ParticleSet& particles, const CellTable& table, Cells which, cons
 /// 12-14), between water alone. With shifting also
 /// shift_velocity, -4 h U sum_j V_j (1 + 0.2 (W_ij/W(spacing))^4) grad W_ij, U = c0/10, at most U/2, and none
 /// near a free surface: P. N. Sun et al., Comput. Methods Appl. Mech. Eng. 315 (2017) 25, eq. 23. Walls that
-/// slip have no viscosity. With `settings.rheology` the second
-/// sum is of 2 mu_ij F_ij (v_ij + (G_i + G_j)^T r_ij/2), mu_ij the harmonic mean (P. W. Cleary, J. J.
-/// Monaghan, J. Comput. Phys. 148 (1999) 227) and G that of rate_pass(): the stress of a viscosity that
+/// slip have no viscosity. In three dimensions and without rheology, water nearer than settings.wall_core to
+/// a particle of a wall feels 4 rho0 c0^2 (1 - r/wall_core) more pressure of that. With `settings.rheology`
+/// the second sum is of 2 mu_ij F_ij (v_ij + (G_i + G_j)^T r_ij/2), mu_ij the harmonic mean (P. W. Cleary, J.
+/// J. Monaghan, J. Comput. Phys. 148 (1999) 227) and G that of rate_pass(): the stress of a viscosity that
 /// differs from place to place, mu (grad v + grad v^T), none in a rigid turn; walls have viscosity and G of
 /// the water. Reads position and partner_* of partners.
 void force_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,

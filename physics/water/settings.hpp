@@ -67,6 +67,7 @@ struct Settings {
     double courant = 0.4;
 
     double radius_in_spacings = 0;  ///< radius of interaction over the spacing of the particles [1]
+    double wall_core = 0;           ///< water nearer to a particle of a wall is pushed off, 0: nowhere [m]
 
     static constexpr double support() { return 2; }  ///< of the kernel [h]
     /// That any of the water may have [Pa s].
@@ -79,6 +80,7 @@ struct Settings {
                             : std::numeric_limits<double>::infinity();
     }
     double radius() const { return support() * smoothing_length; }
+    double spacing() const { return radius() / radius_in_spacings; }  ///< of the particles [m]
 };
 
 }  // namespace talus::water

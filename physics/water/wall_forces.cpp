@@ -50,26 +50,15 @@ class WallForces {
                                  value_count = at_flow + flow_count;
 
     void gather(const CellEntry& cell, std::span<const Run> runs) {
-        frame_.enter(cell);
-        water_.clear(count_of(runs));
-        const auto is_water = [this](std::uint32_t k, std::size_t number) {
-            return negative_lanes(-load_first(volume_ + k, number));
-        };
-        frame_.for_each_near(
-            runs, is_water,
-            [this](std::uint32_t k, std::size_t number, const std::array<FloatLanes, D>& x, LaneBits bits) {
-                std::array<FloatLanes, value_count> values;
-                for (int d = 0; d < D; ++d) {
-                    values[d] = x[d];
-                    values[at_velocity + d] = load_first(velocity_[d] + k, number);
-                }
+        gather_water(
+            frame_, cell, runs, volume_, water_,
+            [this](std::uint32_t k, std::size_t number, std::array<FloatLanes, value_count>& values) {
+                for (int d = 0; d < D; ++d) values[at_velocity + d] = load_first(velocity_[d] + k, number);
                 for (std::size_t c = 0; c < flow_count; ++c)
                     values[at_flow + c] = load_first(flow_[c] + k, number);
                 values[at_volume] = load_first(volume_ + k, number);
                 values[at_pressure] = load_first(pressure_ + k, number);
-                water_.append(bits, values);
             });
-        water_.pad();
     }
 
     void evaluate(std::uint32_t i) {
@@ -81,9 +70,12 @@ class WallForces {
                 r[d] = frame_.place(d, i) - load(from[d] + k);
                 v[d] = velocity_[d][i] - load(from[at_velocity + d] + k);
             }
-            const FloatLanes r2 = sph::dot(r, r), x = max(1 - sqrt(r2), FloatLanes(0.0F));
+            const FloatLanes r2 = sph::dot(r, r), distance = sqrt(r2),
+                             x = max(1 - distance, FloatLanes(0.0F));
             const FloatLanes weight = load(from[at_volume] + k) * (x * x * x);
-            const FloatLanes pressure = pressure_[i] + load(from[at_pressure] + k), sticks = sticks_[i];
+            const FloatLanes pressure = pressure_[i] + load(from[at_pressure] + k) +
+                                        pair_force_.core_pressure(distance),
+                             sticks = sticks_[i];
             Vector<FloatLanes, D> force;
             if constexpr (is_uneven)
                 force = pair_force_(r, v, r2, pressure, sticks, LocalFlow<D>::load(&from[at_flow], k));

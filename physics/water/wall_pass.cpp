@@ -52,23 +52,12 @@ class WallPass {
     static constexpr std::size_t at_velocity = D, at_pressure = 2 * D, value_count = 2 * D + 1;
 
     void gather(const CellEntry& cell, std::span<const Run> runs) {
-        frame_.enter(cell);
-        water_.clear(count_of(runs));
-        const auto is_water = [this](std::uint32_t k, std::size_t number) {
-            return negative_lanes(-load_first(volume_ + k, number));
-        };
-        frame_.for_each_near(
-            runs, is_water,
-            [this](std::uint32_t k, std::size_t number, const std::array<FloatLanes, D>& x, LaneBits bits) {
-                std::array<FloatLanes, value_count> values;
-                for (int d = 0; d < D; ++d) {
-                    values[d] = x[d];
-                    values[at_velocity + d] = load_first(velocity_[d] + k, number);
-                }
+        gather_water(
+            frame_, cell, runs, volume_, water_,
+            [this](std::uint32_t k, std::size_t number, std::array<FloatLanes, value_count>& values) {
+                for (int d = 0; d < D; ++d) values[at_velocity + d] = load_first(velocity_[d] + k, number);
                 values[at_pressure] = load_first(partner_pressure_ + k, number);
-                water_.append(bits, values);
             });
-        water_.pad();
     }
 
     void extrapolate(std::uint32_t i) {

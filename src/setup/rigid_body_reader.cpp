@@ -166,7 +166,7 @@ RigidSetup RigidBodyReader::make(const Communicator& comm, const Scene& scene, c
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         if (!is_rigid(b)) continue;
         constexpr double rounding = 1e-9;
-        const double least = thickness(bodies[b], dimension_);
+        const double least = thickness(bodies[b].shape, dimension_);
         if (least < kernel_radius * (1 - rounding))
             sections_[b].error("",
                                fmt::format("body '{}' is {:.4g} m thick, and the kernel of the water reaches "
@@ -203,14 +203,6 @@ RigidSetup RigidBodyReader::make(const Communicator& comm, const Scene& scene, c
             "between them");
     if (!scene.faulty()) setup.laws = laws_->table();
     return setup;
-}
-
-double thickness(const Body& body, int dimension) {
-    const BoxShape around = bounds(body.shape, dimension);
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
-        least = std::min(least, around.upper[a] - around.lower[a]);
-    return least;
 }
 
 void put_places_in_bodies(const RigidSetup& setup, ParticleSet& particles) {

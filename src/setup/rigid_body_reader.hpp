@@ -45,9 +45,6 @@ class RigidBodyReader {
     std::vector<Section> sections_;
 };
 
-/// Least extent of a body along any axis [m].
-double thickness(const Body& body, int dimension);
-
 /// Gives own particles of rigid bodies their places in them.
 void put_places_in_bodies(const RigidSetup& setup, ParticleSet& particles);
 

@@ -181,15 +181,22 @@ void refuse_thin_buffers(const Section& root, const WaterScene& water) {
                             buffers[b].depth(), radius));
 }
 
-std::vector<WaterGauge> read_gauges(const Section& root, const Box& box) {
+std::vector<WaterGauge> read_gauges(const Section& root, const Box& box, std::vector<std::string>& warnings) {
     std::vector<WaterGauge> gauges;
+    const bool has_ends = root.section("box").has("lower");
     for (const Section& table : root.sections("gauge")) {
         const WaterGauge gauge{table.text("name"), read_point(table, "place", "m", box.dimension)};
         refuse_same_name(table, gauges, gauge.name);
-        for (std::size_t a = 0; a < static_cast<std::size_t>(box.dimension); ++a)
-            if (box.boundary[a] != Boundary::open &&
-                (gauge.place[a] < box.lower[a] || gauge.place[a] > box.upper[a]))
-                table.error("place", fmt::format("is outside the box along {}", "xyz"[a]));
+        for (std::size_t a = 0; a < static_cast<std::size_t>(box.dimension); ++a) {
+            if (gauge.place[a] >= box.lower[a] && gauge.place[a] <= box.upper[a]) continue;
+            const std::string where = fmt::format("is outside the box along {}", "xyz"[a]);
+            if (box.boundary[a] != Boundary::open)
+                table.error("place", where);
+            else if (has_ends)
+                warnings.push_back(
+                    fmt::format("gauge '{}' {}, which is open there: it shows water that flies past, if any",
+                                gauge.name, where));
+        }
         gauges.push_back(gauge);
     }
     return gauges;
@@ -221,7 +228,7 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     setup.settings.radius_in_spacings = water::Settings::support() * smoothing;
     if (!scene.faulty()) read_rheology(table.section("rheology"), setup.settings);
     if (!scene.faulty()) refuse_thin_buffers(root, water);
-    water.gauges = read_gauges(root, setup.box);
+    water.gauges = read_gauges(root, setup.box, water.warnings);
     water.output = read_output(root);
     const Section run = root.section("run");
     setup.partition = read_partition(run);
@@ -237,7 +244,7 @@ std::vector<std::string> WaterScene::body_names() const {
 
 double WaterScene::particles_across(std::size_t body) const {
     const int dimension = simulation.box.dimension;
-    return thickness(bodies[body], dimension) / std::pow(census[body].particle_volume, 1.0 / dimension);
+    return thickness(bodies[body].shape, dimension) / std::pow(census[body].particle_volume, 1.0 / dimension);
 }
 
 ParticleSet empty_water(const WaterSetup& setup) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "domain/clump_fields.hpp"
 #include "io/agree.hpp"
 #include "src/setup/water_scene.hpp"
 #include "src/water/water_record.hpp"
@@ -196,6 +197,9 @@ const std::string mud = [] {
 
 constexpr int steps = 20, stop = 7;
 
+/// Of the bodies of the channel.
+constexpr std::uint8_t outlet = 3;
+
 WaterScene scene_of(const Communicator& comm, const char* text, PartitionMethod method) {
     WaterScene scene = read_water_scene(comm, Scene::parse(text, "water.toml"));
     scene.simulation.partition = method;
@@ -211,21 +215,33 @@ std::vector<double> measured(const WaterScene& scene, WaterSimulation& simulatio
     return row;
 }
 
+/// All that a checkpoint would hold, and what was measured.
 struct Outcome {
-    GatheredState state;
+    GatheredState water, bodies, contacts;
+    std::map<std::string, double> numbers;
     std::vector<double> measured;
     bool operator==(const Outcome&) const = default;
 };
+
+Outcome outcome_of(const Communicator& comm, const WaterScene& scene, WaterSimulation& simulation) {
+    Outcome found;
+    found.water = gather_state(comm, simulation.particles());
+    simulation.save_numbers(found.numbers);
+    if (const RigidBodies* rigid = simulation.rigid()) {
+        EXPECT_GT(rigid->substeps(), 1) << "bodies must touch";
+        found.bodies = gather_state(comm, rigid->saved_states());
+        found.contacts = gather_state(comm, rigid->saved_contacts());
+    }
+    found.measured = measured(scene, simulation);
+    return found;
+}
 
 Outcome run(const Communicator& comm, const char* text, PartitionMethod method) {
     const WaterScene scene = scene_of(comm, text, method);
     WaterSimulation simulation(comm, scene.simulation, make_water(comm, scene));
     simulation.start();
     for (int k = 0; k < steps; ++k) simulation.step();
-    if (const RigidBodies* rigid = simulation.rigid()) {
-        EXPECT_GT(rigid->substeps(), 1) << "bodies must touch";
-    }
-    return {gather_state(comm, simulation.particles()), measured(scene, simulation)};
+    return outcome_of(comm, scene, simulation);
 }
 
 class WaterSameBits : public testing::TestWithParam<const char*> {};
@@ -233,7 +249,7 @@ class WaterSameBits : public testing::TestWithParam<const char*> {};
 TEST_P(WaterSameBits, OnAnyRanks) {
     const Communicator alone(MPI_COMM_SELF), world(MPI_COMM_WORLD);
     const Outcome expected = run(alone, GetParam(), PartitionMethod::slabs);
-    EXPECT_GT(expected.state.ids.size(), 400u);
+    EXPECT_GT(expected.water.ids.size(), 400u);
     EXPECT_NE(expected.measured.front(), 0);
     EXPECT_NE(expected.measured.back(), 0);
     for (const PartitionMethod method : {PartitionMethod::cheapest, PartitionMethod::scrambled})
@@ -266,8 +282,7 @@ TEST_P(WaterSameBits, AfterInterruption) {
     if (states) second.rigid()->restore(*states, *contacts);
     second.resume(first.time(), first.time_step(), first.step_count(), numbers);
     for (int k = stop; k < steps; ++k) second.step();
-    const Outcome after{gather_state(world, second.particles()), measured(scene, second)};
-    EXPECT_TRUE(after == run(alone, GetParam(), PartitionMethod::slabs));
+    EXPECT_TRUE(outcome_of(world, scene, second) == run(alone, GetParam(), PartitionMethod::slabs));
 }
 
 std::string name_of(const testing::TestParamInfo<const char*>& scene) {
@@ -277,6 +292,27 @@ std::string name_of(const testing::TestParamInfo<const char*>& scene) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, WaterSameBits, testing::Values(plane, space, channel, mud.c_str(), bodies),
                          name_of);
+
+// Water that flows upwards, too, has left that behind once it is the outflow's.
+TEST(OutflowOfWater, MovesAlongItsAxisAlone) {
+    const Communicator world(MPI_COMM_WORLD);
+    std::string text = channel;
+    const std::string flows = "velocity = [3, 0]";
+    text.replace(text.find(flows), flows.size(), "velocity = [3, 0.4]");
+    const WaterScene scene = scene_of(world, text.c_str(), PartitionMethod::cheapest);
+    WaterSimulation simulation(world, scene.simulation, make_water(world, scene));
+    simulation.start();
+    for (int k = 0; k < steps; ++k) simulation.step();
+    const ParticleSet& water = simulation.particles();
+    std::uint64_t arrived = 0;
+    for (std::size_t i = 0; i < water.size(); ++i) {
+        if (water.data(field::body)[i] != outlet) continue;
+        EXPECT_EQ(water.data(field::velocity, 1)[i], 0);
+        const double height = water.data(field::position, 1)[i] / 0.02 - 0.5;
+        arrived += std::abs(height - std::round(height)) > 1e-6 ? 1 : 0;  // off the rows of the start
+    }
+    EXPECT_GT(world.all_sum(arrived), 0u);
+}
 
 /// What a run says on every rank after a value of the particle with this id has been spoilt on the rank that
 /// has it.
@@ -307,6 +343,25 @@ TEST(WaterFaults, AreNamed) {
     EXPECT_NE(said_after(field::density, nan, 17).find("in set 'water' is not finite"), std::string::npos);
     const std::string said = said_after(field::density, -500, 17);
     EXPECT_NE(said.find("a density that is not positive at particle 17"), std::string::npos) << said;
+}
+
+TEST(WaterFaults, NameTheRigidBody) {
+    const Communicator world(MPI_COMM_WORLD);
+    const WaterScene scene = scene_of(world, bodies, PartitionMethod::cheapest);
+    WaterSimulation simulation(world, scene.simulation, make_water(world, scene));
+    simulation.start();
+    ParticleSet states = simulation.rigid()->saved_states();
+    if (states.size() > 0)
+        states.data(field::clump_velocity, 0)[0] = std::numeric_limits<double>::quiet_NaN();
+    simulation.rigid()->restore(states, simulation.rigid()->saved_contacts());
+    try {
+        simulation.step();
+        ADD_FAILURE() << "it went on";
+    } catch (const AgreedError& failure) {
+        const std::string said = failure.what();
+        EXPECT_NE(said.find("rigid body '" + simulation.rigid()->body(0).name), std::string::npos) << said;
+        EXPECT_NE(said.find("a state that is not finite"), std::string::npos) << said;
+    }
 }
 
 }  // namespace
