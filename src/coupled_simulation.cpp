@@ -42,6 +42,7 @@ double ball(double radius) { return 4.0 / 3 * std::numbers::pi * radius * radius
 CoupledSetup CoupledSimulation::completed(CoupledSetup setup) {
     setup.water.box = dem::PeriodicPlaces(setup.water.box).aligned(setup.water.box);
     setup.water.holds_grains = true;
+    setup.water.settings.wall_core = 0.9 * setup.water.settings.spacing();  // docs/decisions/032
     setup.grains.fluid_cells = WaterSimulation::cells(setup.water);
     return setup;
 }
@@ -193,9 +194,10 @@ void CoupledSimulation::immerse() {
     double* volume = water.particles.data(of::quadrature_volume);
     const auto& walls = setup_.water.walls;
     const dem::Vectors place(std::as_const(water.particles), field::position);
+    const double depth = setup_.water.settings.spacing();
     const auto is_behind = [&](const dem::Vector3<>& x) {
         return std::ranges::any_of(setup_.coupling.spreading.planes, [&](const coupling::MirrorPlane& plane) {
-            return dot(x - plane.point, plane.normal) < 0;
+            return dot(x - plane.point, plane.normal) < -depth;
         });
     };
     for (std::size_t a = 0; a < water.particles.size(); ++a) {

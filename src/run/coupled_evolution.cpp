@@ -21,14 +21,25 @@ CoupledEvolution::CoupledEvolution(const Communicator& comm, const Scene& scene,
       scene_(scene),
       setup_(read_coupled_scene(comm, scene)),
       end_time_(until.value_or(setup_.water.output.end_time)),
-      record_(setup_.water.simulation, setup_.water.body_names(), setup_.water.gauges) {
+      record_(setup_.water.simulation, setup_.water.body_names(), setup_.water.gauges),
+      speed_(most_speed_of_water * setup_.water.simulation.settings.state.sound_speed) {
     check_snapshots(scene, output(), end_time_);
     refuse_short_box(scene, setup_.water.simulation.box, setup_.kernel_radius);
 }
 
 std::vector<std::string> CoupledEvolution::warnings() const {
     std::vector<std::string> found = setup_.warnings;
-    found.insert(found.end(), setup_.grains.warnings.begin(), setup_.grains.warnings.end());
+    for (const std::vector<std::string>& more : {water_warnings(setup_.water), setup_.grains.warnings})
+        found.insert(found.end(), more.begin(), more.end());
+    return found;
+}
+
+std::vector<std::string> CoupledEvolution::news() {
+    std::vector<std::string> found = simulation_->grains().take_notes();
+    if (overlap_.is_due()) found.push_back(overlap_note(time(), overlap_.greatest()));
+    if (speed_.is_due())
+        found.push_back(
+            speed_note(time(), speed_.greatest(), setup_.water.simulation.settings.state.sound_speed));
     return found;
 }
 
@@ -159,6 +170,8 @@ Diagnostics CoupledEvolution::diagnostics() {
     const WaterTotals w = simulation_->water().totals();
     const GrainTotals g = simulation_->grains().totals();
     const CouplingTotals c = simulation_->totals();
+    speed_.see(w.greatest_speed);
+    overlap_.see(g.greatest_overlap);
     Diagnostics found{{time(), time_step(), w.mass, w.kinetic_energy, g.mass, g.kinetic_energy,
                        w.greatest_speed, g.greatest_speed, w.least_pressure, w.greatest_pressure},
                       0};

@@ -3,6 +3,7 @@
 
 #include "src/coupled_simulation.hpp"
 #include "src/run/evolution.hpp"
+#include "src/run/notes.hpp"
 #include "src/setup/coupled_scene.hpp"
 #include "src/water/water_record.hpp"
 
@@ -24,7 +25,7 @@ class CoupledEvolution : public Evolution {
     void start() override;
     void resume(const RunState& state) override;
     void step() override { simulation_->step(); }
-    std::vector<std::string> news() override { return simulation_->grains().take_notes(); }
+    std::vector<std::string> news() override;
     double time() const override { return simulation_->water().time(); }
     double time_step() const override { return simulation_->water().time_step(); }
     std::uint64_t step_count() const override { return simulation_->water().step_count(); }
@@ -57,6 +58,7 @@ class CoupledEvolution : public Evolution {
     CoupledScene setup_;
     double end_time_;  ///< [s]
     WaterRecord record_;
+    Watch speed_, overlap_{most_overlap_of_hard_grains};  ///< of what diagnostics saw
     std::optional<CoupledSimulation> simulation_;
     std::optional<ParticleSet> read_contacts_;  ///< of the checkpoint, until resume()
 };

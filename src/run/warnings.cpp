@@ -99,15 +99,12 @@ void warn_of_time_step(const sph::Settings& sph, std::vector<std::string>& found
 }  // namespace
 
 void warn_of_thin_wall(const Body& wall, double range, int dimension, std::vector<std::string>& found) {
-    const BoxShape around = bounds(wall.shape, dimension);
-    double thickness = std::numeric_limits<double>::infinity();
-    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
-        thickness = std::min(thickness, around.upper[a] - around.lower[a]);
-    if (thickness > 0.9 * range) return;
+    const double least = thickness(wall.shape, dimension);
+    if (least > 0.9 * range) return;
     found.push_back(
         fmt::format("body '{}' is a wall {:.3g} m thick, and forces reach {:.3g} m: what lies on it "
                     "will sink in",
-                    wall.name, thickness, range));
+                    wall.name, least, range));
 }
 
 std::vector<std::string> warnings(const SceneSetup& setup) {

@@ -9,10 +9,8 @@
 
 #include "domain/water_fields.hpp"
 #include "io/checkpoint.hpp"
-#include "physics/water/sound_waves.hpp"
 #include "src/run/options.hpp"
 #include "src/run/scene_checks.hpp"
-#include "src/run/warnings.hpp"
 
 namespace talus {
 
@@ -21,54 +19,10 @@ WaterEvolution::WaterEvolution(const Communicator& comm, const Scene& scene, std
       scene_(scene),
       setup_(read_water_scene(comm, scene)),
       end_time_(until.value_or(setup_.output.end_time)),
-      record_(setup_.simulation, setup_.body_names(), setup_.gauges) {
+      record_(setup_.simulation, setup_.body_names(), setup_.gauges),
+      speed_(most_speed_of_water * setup_.simulation.settings.state.sound_speed) {
     check_snapshots(scene, setup_.output, end_time_);
     refuse_short_box(scene, setup_.simulation.box, setup_.simulation.settings.radius());
-}
-
-namespace {
-
-/// Sound that the time step makes grow: physics/water/sound_waves.hpp, tests/stability/water.cpp.
-void warn_of_sound(const water::Settings& settings, int dimension, std::vector<std::string>& found) {
-    constexpr double slow = 1e-4;  // a thousand steps then make a tenth more of it
-    const double step = std::min(settings.courant * settings.smoothing_length / settings.state.sound_speed,
-                                 settings.viscous_time_step()),
-                 growth = water::fastest_growing(settings, dimension, step).growth;
-    if (growth < 1 + slow) return;
-    water::Settings diffusive = settings;
-    diffusive.density_diffusion = 0.1;
-    std::string remedy;
-    if (const double most = water::greatest_courant(diffusive, dimension, 1);
-        settings.density_diffusion < diffusive.density_diffusion && settings.courant <= most)
-        remedy = fmt::format("water.density_diffusion = {}", diffusive.density_diffusion);
-    else
-        remedy =
-            fmt::format("water.courant = {:.2g}", 0.95 * water::greatest_courant(settings, dimension, 1));
-    found.push_back(
-        fmt::format("sound in still water grows {:.2g} times in a hundred steps with water.courant = {} and "
-                    "water.density_diffusion = {}; {} damps it",
-                    std::pow(growth, 100), settings.courant, settings.density_diffusion, remedy));
-}
-
-}  // namespace
-
-std::vector<std::string> WaterEvolution::warnings() const {
-    std::vector<std::string> found = setup_.warnings;
-    const water::Settings& settings = setup_.simulation.settings;
-    const int dimension = setup_.simulation.box.dimension;
-    if (settings.artificial_viscosity == 0) warn_of_sound(settings, dimension, found);
-    for (std::size_t b = 0; b < setup_.bodies.size(); ++b)
-        if (!setup_.simulation.walls.empty() && setup_.simulation.walls[b])
-            warn_of_thin_wall(setup_.bodies[b], settings.radius(), dimension, found);
-    for (int axis = 0; axis < dimension; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        if (setup_.simulation.box.boundary[a] == Boundary::reflecting && settings.gravity[a] != 0)
-            found.push_back(
-                fmt::format("gravity acts across the reflecting boundaries along {}, whose images "
-                            "do not bear the weight of water; walls of particles do",
-                            "xyz"[a]));
-    }
-    return found;
 }
 
 void WaterEvolution::emplace(ParticleSet particles) {
@@ -137,17 +91,10 @@ void WaterEvolution::describe(RunState& state) const {
 }
 
 std::vector<std::string> WaterEvolution::news() {
-    constexpr double slow = 0.15;  // of the speed of sound: changes of the density of about a per cent
     if (OpenBoundaries* open = simulation_->open())
         if (std::vector<std::string> notes = open->take_notes(); !notes.empty()) return notes;
-    if (told_of_speed_) return {};
-    const double sound = setup_.simulation.settings.state.sound_speed;
-    if (greatest_speed_ < slow * sound) return {};
-    told_of_speed_ = true;
-    return {fmt::format(
-        "time {:.4g} s: water moves at {:.4g} m/s, {:.2g} of the speed of sound, {:.4g} m/s; above "
-        "a tenth its density changes by more than a per cent: a greater water.greatest_speed?",
-        time(), greatest_speed_, greatest_speed_ / sound, sound)};
+    if (!speed_.is_due()) return {};
+    return {speed_note(time(), speed_.greatest(), setup_.simulation.settings.state.sound_speed)};
 }
 
 std::vector<SnapshotField> WaterEvolution::snapshot_fields() const {
@@ -219,7 +166,7 @@ std::vector<CsvColumn> WaterEvolution::diagnostics_columns() const {
 
 Diagnostics WaterEvolution::diagnostics() {
     const WaterTotals t = simulation_->totals();
-    greatest_speed_ = std::max(greatest_speed_, t.greatest_speed);
+    speed_.see(t.greatest_speed);
     Diagnostics found{
         {time(), time_step(), t.mass, t.kinetic_energy, t.potential_energy, t.elastic_energy,
          t.greatest_speed, t.least_density, t.greatest_density, t.least_pressure, t.greatest_pressure},

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "src/run/evolution.hpp"
+#include "src/run/notes.hpp"
 #include "src/setup/water_scene.hpp"
 #include "src/water/water_record.hpp"
 #include "src/water_simulation.hpp"
@@ -16,7 +17,7 @@ class WaterEvolution : public Evolution {
     const std::string& title() const override { return setup_.title; }
     const OutputPlan& output() const override { return setup_.output; }
     double end_time() const override { return end_time_; }
-    std::vector<std::string> warnings() const override;
+    std::vector<std::string> warnings() const override { return water_warnings(setup_); }
     void create(const std::function<void()>& check_stop) override;
     ReadCheckpoint read(const std::filesystem::path& what,
                         const std::filesystem::path& output_folder) override;
@@ -58,8 +59,7 @@ class WaterEvolution : public Evolution {
     double end_time_;  ///< [s]
     WaterRecord record_;
     std::optional<WaterSimulation> simulation_;
-    double greatest_speed_ = 0;  ///< in any row of the diagnostics [m/s]
-    bool told_of_speed_ = false;
+    Watch speed_;  ///< of what diagnostics saw [m/s]
 };
 
 }  // namespace talus

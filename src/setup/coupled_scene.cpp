@@ -138,6 +138,16 @@ void judge_resolution(CoupledScene& scene) {
                         "diameters; for grains larger than the spacing the resolved coupling serves, bodies "
                         "that move in water",
                         scene.greatest_diameter, scene.water.spacing, least_spacing));
+    constexpr double least_average = 1.25;  // in diameters, 1.212: tests/stability/solid_fraction.cpp
+    const double average = scene.coupling.spreading.radius, least = least_average * scene.greatest_diameter;
+    if (average < least)
+        scene.warnings.push_back(fmt::format(
+            "grains of up to {:.4g} m across are averaged over {:.4g} m: where they are packed they "
+            "fill more than all of the space; {}",
+            scene.greatest_diameter, average,
+            least < scene.kernel_radius
+                ? fmt::format("coupling.averaging_length = {:.4g} keeps below that", least)
+                : "coarser water keeps below that"));
     if (scene.coupling.laws.viscosity == 0)
         scene.warnings.emplace_back("the water has no viscosity: it does not drag the grains");
 }

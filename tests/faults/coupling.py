@@ -88,6 +88,13 @@ class Coupling(Case):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertRegex(done.stdout, r"note: grains of up to 0\.0018 m across .*resolved")
 
+    def test_a_check_warns_of_averages_over_too_little(self):
+        done = talus("check", self.scene(SCENE.replace("[coupling]", "[coupling]\naveraging_length = 0.0011")), ranks=0)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertRegex(done.stdout, r"note: .*averaged over 0\.0011 m.*averaging_length = 0\.00125 keeps below that")
+        done = talus("check", self.scene(SCENE.replace("[coupling]", "[coupling]\naveraging_length = 0.00125")), ranks=0)
+        self.assertNotRegex(done.stdout, "averaged over")
+
     def test_a_check_warns_of_water_that_drags_nothing(self):
         done = talus("check", self.scene(SCENE.replace("viscosity = 0.001", "viscosity = 0")), ranks=0)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)

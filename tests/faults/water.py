@@ -115,6 +115,11 @@ class Water(Case):
                 self.assertNotRegex(done.stdout, r"note: (sound|body 'floor')")
         done = talus("check", self.scene(SCENE.replace("[-0.08, -0.08]", "[-0.08, -0.02]")), ranks=0)
         self.assertRegex(done.stdout, r"note: body 'floor' is a wall 0\.02 m thick")
+        open_box = '[box]\nboundaries = ["open", "open"]\nlower = [-0.1, -0.1]\nupper = [0.5, 1]\n'
+        gauges = '[[gauge]]\nname = "near"\nplace = [0.2, 0.1]\n[[gauge]]\nname = "far"\nplace = [2, 0.1]\n'
+        done = talus("check", self.scene(SCENE.replace("[water]", open_box + "[water]") + gauges), ranks=0)
+        self.assertRegex(done.stdout, r"note: gauge 'far' is outside the box along x, which is open there")
+        self.assertNotRegex(done.stdout, r"gauge 'near'")
 
     def test_a_restart_with_other_bodies(self):
         done = talus("run", self.scene(SCENE), "--out", self.out, "--steps", 2)

@@ -14,8 +14,10 @@ CoupledScene coupled_scene(const Communicator& comm, const std::filesystem::path
 
 void run_coupled(const Communicator& comm, const CoupledScene& scene,
                  const std::function<void(const CoupledSimulation&)>& after) {
-    CoupledSimulation simulation(comm, scene.simulation(), make_water(comm, scene.water),
-                                 make_grains(comm, scene.grains));
+    CoupledSetup setup = scene.simulation();
+    setup.grains.settling = scene.grains.simulation.settling;
+    CoupledSimulation simulation(comm, setup, make_water(comm, scene.water), make_grains(comm, scene.grains));
+    if (setup.grains.settling) simulation.settle([] {});
     simulation.start();
     after(simulation);
     while (simulation.water().time() < scene.water.output.end_time) {
