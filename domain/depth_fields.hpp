@@ -53,7 +53,9 @@ inline constexpr Field<double> pressure_factor{"pressure_factor",
 inline constexpr Field<double> wave_speed{"wave_speed", "m s-1", scalar,
                                           work,         halo,    "speed of long waves in plan"};
 inline constexpr Field<double> signal_speed{
-    "signal_speed", "m s-1", scalar, work, owner, "greatest speed of approach of a signal from a partner"};
+    "signal_speed", "m s-1",
+    scalar,         work,
+    owner,          "greatest speed of approach of a signal from a partner, less beyond the own kernel"};
 inline constexpr Field<double> surface_level{
     "surface_level", "m", scalar, work, halo, "elevation of the free surface"};
 inline constexpr Field<double> divergence{"divergence", "s-1", scalar,

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <limits>
 #include <new>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "domain/cell_table.hpp"
 #include "domain/lanes.hpp"
+#include "domain/particle_blocks.hpp"
 
 namespace talus {
 
@@ -43,6 +45,7 @@ using AlignedValues = AlignedArray<double>;
 
 /// The interaction partners of the particles of one cell after another: found exactly (|r| < radius, itself
 /// excluded), in canonical order, so that what is summed over them has the same bits on any number of ranks.
+/// Particles with a smoothing length of 0 have no partners and must not be asked for theirs.
 template <int D>
 class Partners {
   public:
@@ -51,17 +54,17 @@ class Partners {
     Partners(const std::array<const double*, D>& position, const double* h, double range)
         : position_(position), h_(h), range_(range) {}
 
-    /// Takes up a cell: lists those of the runs' particles (CellTable) that are within reach of the box
-    /// around the cell's particles.
+    /// For radii that differ much: looks for the partners among blocks of the first `count` particles, none
+    /// beyond which may be in a run. The same partners in the same order, sooner found.
+    void search_by_blocks(std::size_t count) { block_particles_ = count; }
+
+    /// Takes up a cell: lists those of the runs' particles (CellTable) that are within their own reach, or
+    /// that of one of the cell's particles, of the box around these.
     void enter(const CellEntry& cell, std::span<const Run> runs) {
         std::size_t count = 0;
-        double largest = 0;
-        for (const Run& run : runs) {
-            count += run.end - run.begin;
-            largest = std::max(largest, *std::max_element(h_ + run.begin, h_ + run.end));
-        }
+        for (const Run& run : runs) count += run.end - run.begin;
         reserve(count);
-        list_candidates(cell, runs, range_ * largest * (range_ * largest));
+        list_candidates(cell, runs);
         cell_begin_ = cell.begin;
         const auto place = std::find(candidates_.begin(), candidates_.end(), cell.begin);
         cell_place_ = static_cast<std::size_t>(place - candidates_.begin());
@@ -107,7 +110,8 @@ class Partners {
         index_.resize(room);
     }
 
-    void list_candidates(const CellEntry& cell, std::span<const Run> runs, double reach2) {
+    void list_candidates(const CellEntry& cell, std::span<const Run> runs) {
+        const double largest = *std::max_element(h_ + cell.begin, h_ + cell.end);
         std::array<double, D> lower, upper;
         for (int d = 0; d < D; ++d) {
             const auto [least, greatest] =
@@ -116,25 +120,34 @@ class Partners {
             upper[d] = *greatest;
         }
         candidate_count_ = 0;
+        const auto list_near = [&](const Run& run) { list_candidates(run, lower, upper, largest); };
+        if (block_particles_ > 0 && !blocks_)
+            blocks_.emplace().build(position_, h_, range_, block_particles_);
+        for (const Run& run : runs) {
+            if (blocks_)
+                blocks_->for_each_near(run, lower, upper, range_ * largest, list_near);
+            else
+                list_near(run);
+        }
+    }
+
+    void list_candidates(const Run& run, const std::array<double, D>& lower,
+                         const std::array<double, D>& upper, double largest) {
         std::array<std::uint32_t, lane_count> place;
-        for (const Run& run : runs)
-            for (std::uint32_t k = run.begin; k < run.end; k += lane_count) {
-                const std::uint32_t last = run.end - 1;
-                for (std::uint32_t lane = 0; lane < lane_count; ++lane) place[lane] = k + lane;
-                Lanes outside2 = 0;
-                for (int d = 0; d < D; ++d) {
-                    const Lanes x =
-                        k + lane_count <= run.end
-                            ? load(position_[d] + k)
-                            : Lanes([&](auto lane) { return position_[d][std::min(place[lane], last)]; });
-                    const Lanes outside = max(max(lower[d] - x, x - upper[d]), Lanes(0.0));
-                    outside2 += outside * outside;
-                }
-                Lanes excess = outside2 - reach2;
-                if (k + lane_count > run.end) excess = select(first_lanes(run.end - k), excess, Lanes(1.0));
-                candidate_count_ +=
-                    keep_negative(excess, place.data(), candidates_.data() + candidate_count_);
+        for (std::uint32_t k = run.begin; k < run.end; k += lane_count) {
+            const std::size_t left = run.end - k;
+            for (std::uint32_t lane = 0; lane < lane_count; ++lane) place[lane] = k + lane;
+            Lanes outside2 = 0;
+            for (int d = 0; d < D; ++d) {
+                const Lanes x = load_first(position_[d] + k, left);
+                const Lanes outside = max(max(lower[d] - x, x - upper[d]), Lanes(0.0));
+                outside2 += outside * outside;
             }
+            const Lanes reach = range_ * max(load_first(h_ + k, left), Lanes(largest));
+            Lanes excess = outside2 - reach * reach;
+            if (left < lane_count) excess = select(first_lanes(left), excess, Lanes(1.0));
+            candidate_count_ += keep_negative(excess, place.data(), candidates_.data() + candidate_count_);
+        }
     }
 
     /// Lists the candidates for which excess(k, squared distance) is negative; i itself is out of reach
@@ -169,6 +182,8 @@ class Partners {
     std::array<const double*, D> position_;
     const double* h_;
     double range_;
+    std::size_t block_particles_ = 0;  ///< 0: no blocks
+    std::optional<ParticleBlocks<D>> blocks_;
     std::vector<std::uint32_t> candidates_;  ///< for the particles of the cell, in canonical order
     std::size_t candidate_count_ = 0;
     std::array<AlignedValues, D> near_position_;  ///< of the candidates

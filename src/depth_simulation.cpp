@@ -10,14 +10,18 @@
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
 #include "domain/depth_fields.hpp"
+#include "domain/merging_fields.hpp"
 #include "domain/pore_pressure_field.hpp"
 #include "domain/two_phase_fields.hpp"
+#include "physics/depth/merging.hpp"
 #include "src/step_support.hpp"
 
 namespace talus {
 
 namespace {
 constexpr double pairs_worth_a_particle = 20;  // what costs the same as all but pairs
+constexpr std::uint64_t merging_interval =
+    5;  // steps; columns move little in them, and a search costs as a pass
 }  // namespace
 
 DepthSimulation::DepthSimulation(const Communicator& comm, DepthSetup setup, ParticleSet particles)
@@ -38,6 +42,7 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
          &field::predicted_velocity, &field::next_smoothing_length, &field::column_height,
          &field::grad_h_volume, &field::pressure_factor, &field::wave_speed, &field::signal_speed});
     if (settings.balance) add({&field::still_acceleration});
+    if (settings.merging_distance > 0) add({&field::known_id, &field::nearest_column});
     if (settings.earth_pressure) add({&field::divergence, &field::earth_pressure});
     if (settings.two_phase)
         add({&field::is_water, &field::other_height, &field::other_cover, &field::lateral_gravity,
@@ -114,13 +119,15 @@ void DepthSimulation::step() {
     const double dt = time_step_;
     phases_.enter(Phase::motion);
     depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
+    const bool is_merging = setup_.settings.merging_distance > 0 && (step_ + 1) % merging_interval == 0;
+    const Decomposition::Ledger merged = is_merging ? merge() : Decomposition::Ledger{};
     depth::drift(particles_, setup_.settings, dt);
     apply_boundaries(particles_, setup_.box);
     phases_.enter(Phase::decompose);
     const Decomposition::Ledger gone = outflow_.take(particles_, *setup_.terrain, time_ + dt);
-    if (gone.count() > 0) decomposition_.expect_change({}, gone);
+    decomposition_.expect_change({}, gone);
     const auto interval = static_cast<std::uint64_t>(setup_.rebalance_interval);
-    if (work_measured_ && gone.count() == 0 && interval > 0 && step_ % interval == 0)
+    if (work_measured_ && gone.count() + merged.count() == 0 && interval > 0 && step_ % interval == 0)
         decomposition_.rebalance(pass_count_.work_of_cell);
     arrange();
     evaluate(dt / 2);
@@ -152,12 +159,42 @@ void DepthSimulation::find_heights() {
                    {&field::position, &field::volume}, pass);
 }
 
-/// Drag between solid and water for a time, with the velocities as they are now.
-void DepthSimulation::drag(double time) {
+/// The velocities as they are now into predicted_velocity, which partners can see.
+void DepthSimulation::copy_velocity() {
     for (int axis = 0; axis < particles_.dimension(); ++axis) {
         const auto now = std::as_const(particles_).own(field::velocity, axis);
         std::copy(now.begin(), now.end(), particles_.data(field::predicted_velocity, axis));
     }
+}
+
+/// Columns that have come nearer than merging_distance become one. Returns what is gone, the same on every
+/// rank; the decomposition expects it. arrange() must follow.
+Decomposition::Ledger DepthSimulation::merge() {
+    phases_.enter(Phase::density);
+    copy_velocity();
+    const auto ids = std::as_const(particles_).own(field::id);
+    std::copy(ids.begin(), ids.end(), particles_.data(field::known_id));
+    decomposition_.halo().begin(particles_, {&field::position, &field::smoothing_length, &field::volume,
+                                             &field::predicted_velocity, &field::known_id});
+    decomposition_.halo().finish();
+    const std::vector<std::uint32_t> nearest =
+        depth::find_nearest(particles_, decomposition_.table(), setup_.settings);
+    decomposition_.halo().begin(particles_, {&field::nearest_column});
+    decomposition_.halo().finish();
+    const std::vector<std::uint32_t> kept = depth::merge(particles_, nearest);
+    Decomposition::Ledger gone{{particles_.size() - kept.size(), 0}};
+    for (const std::uint64_t id : ids) gone.sums[1] += id;
+    for (const std::uint32_t i : kept) gone.sums[1] -= ids[i];
+    if (gone.count() > 0) particles_.reorder(kept);
+    comm_.all_sum(std::span<std::uint64_t>(gone.sums));
+    decomposition_.expect_change({}, gone);
+    phases_.enter(Phase::motion);
+    return gone;
+}
+
+/// Drag between solid and water for a time, with the velocities as they are now.
+void DepthSimulation::drag(double time) {
+    copy_velocity();
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_, {&field::predicted_velocity},
                [&](Cells cells) {
                    depth::relative_velocity_pass(particles_, decomposition_.table(), cells, setup_.settings,
@@ -209,19 +246,25 @@ void DepthSimulation::evaluate(double time_ahead) {
     work_measured_ = true;
 }
 
-/// What loads the mixture of grains and water at the bed; nothing without pore pressure. The bed's curvature
-/// is left out: its short bumps would drain the flow.
+/// What loads the mixture of grains and water at the bed, of two phases the buoyant weight of the solid, none
+/// in columns of water; nothing without pore pressure. The bed's curvature is left out: its short bumps would
+/// drain the flow.
 std::vector<double> DepthSimulation::loads() const {
     std::vector<double> found;
     if (!setup_.pore_pressure) return found;
     const depth::Settings& settings = setup_.settings;
-    const double unit_weight = setup_.pore_pressure->loaded_share * settings.density * settings.gravity;
+    const auto& phases = settings.two_phase;
+    const double density = phases ? phases->solid_density - phases->water_density : settings.density;
+    const double unit_weight = setup_.pore_pressure->loaded_share * density * settings.gravity;
+    const double* is_water = settings.two_phase ? particles_.data(field::is_water) : nullptr;
     const bool fitted = settings.form == depth::Form::bed_fitted;
     for (std::size_t i = 0; i < particles_.size(); ++i) {
         std::array<double, 2> slope{};
         for (int a = 0; fitted && a < particles_.dimension(); ++a)
             slope[static_cast<std::size_t>(a)] = particles_.data(field::bed_slope, a)[i];
-        found.push_back(unit_weight * depth::Tilt(slope).cosine * particles_.data(field::depth)[i]);
+        const bool is_loaded = !is_water || is_water[i] == 0;
+        found.push_back(is_loaded ? unit_weight * depth::Tilt(slope).cosine * particles_.data(field::depth)[i]
+                                  : 0.0);
     }
     return found;
 }
@@ -233,8 +276,9 @@ void DepthSimulation::consolidate(std::span<const double> loads_before, double t
         pressure.push_back(particles_.data(field::excess_pore_pressure, k));
     const std::vector<double> loads_after = loads();
     if (step_ == 0 && time_step == 0) return depth::set_pore_pressure(model.ratio, loads_after, pressure);
-    const depth::LoadedColumns columns{std::as_const(particles_).own(field::depth), loads_before,
-                                       loads_after};
+    std::vector<double> drained_depth;  // both phases fill the depth that water takes its way through
+    for (std::size_t i = 0; i < particles_.size(); ++i) drained_depth.push_back(whole_depth(i));
+    const depth::LoadedColumns columns{drained_depth, loads_before, loads_after};
     if (model.points == 1)
         depth::consolidate_first_mode(model.law, columns, time_step,
                                       particles_.own(field::excess_pore_pressure));

@@ -114,6 +114,8 @@ class DepthSimulation {
     std::vector<double> loads() const;
     void consolidate(std::span<const double> loads_before, double time_step);
     void drag(double time);
+    void copy_velocity();
+    Decomposition::Ledger merge();
     void conclude_step();
 
     const Communicator& comm_;

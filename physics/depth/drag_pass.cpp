@@ -30,6 +30,7 @@ class RelativeVelocityPass {
           exchange_(particles.data(field::exchange)),
           partners_(components<D>(particles, field::position), smoothing_length_, Settings::support()),
           records_(particles, table, which) {
+        partners_.search_by_blocks(particles.size() + (which == Cells::interior ? 0 : particles.halo_size()));
         records_.copy(0, components<D>(particles, field::position));
         records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));
         records_.copy(place_volume, components<1>(particles, field::volume));
@@ -116,6 +117,7 @@ class DragPass {
           partners_(components<D>(particles, field::position), particles.data(field::smoothing_length),
                     Settings::support()),
           records_(particles, table, which) {
+        partners_.search_by_blocks(particles.size() + (which == Cells::interior ? 0 : particles.halo_size()));
         records_.copy(0, components<D>(particles, field::position));
         records_.copy(place_relative, components<D>(particles, field::relative_velocity));
         records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));

@@ -31,6 +31,7 @@ class HeightPass {
           grad_h_(particles.data(field::grad_h_volume)),
           partners_(components<D>(particles, field::position), smoothing_length_, Settings::support()),
           records_(particles, table, which) {
+        partners_.search_by_blocks(particles.size() + (which == Cells::interior ? 0 : particles.halo_size()));
         records_.copy(0, components<D>(particles, field::position));
         records_.copy(place_volume, components<1>(particles, field::volume));
         if constexpr (of_phases) {

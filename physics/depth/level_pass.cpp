@@ -21,6 +21,7 @@ class LevelPass {
           partners_(components<D>(particles, field::position), particles.data(field::smoothing_length),
                     Settings::support()),
           records_(particles, table, which) {
+        partners_.search_by_blocks(particles.size() + (which == Cells::interior ? 0 : particles.halo_size()));
         records_.copy(0, components<D>(particles, field::position));
         records_.copy(place_volume, components<1>(particles, field::volume));
         records_.copy(place_inverse_s, components<1>(particles, field::smoothing_length));

@@ -83,10 +83,11 @@ void advance(ParticleSet& particles, const Settings& settings, const Bedded& bed
         particles.has(field::excess_pore_pressure) ? particles.data(field::excess_pore_pressure) : nullptr;
     const Bed<D> bed(particles, settings);
     const auto pressure_in_pores = [&](std::size_t i) {
-        if (!bedded.is_water || bedded.of_water != 0) return pore_pressure ? pore_pressure[i] : 0.0;
+        const double excess = pore_pressure ? pore_pressure[i] : 0;
+        if (!bedded.is_water || bedded.of_water != 0) return excess;
         const TwoPhase& phases = *settings.two_phase;
-        return phases.saturation(bedded.other_height[i] * bed.cosine(i) / depth[i]) * phases.water_density *
-               bed.gravity(i) * depth[i];
+        return excess + phases.saturation(bedded.other_height[i] * bed.cosine(i) / depth[i]) *
+                            phases.water_density * bed.gravity(i) * depth[i];
     };
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (!bedded.is_meant(i)) continue;

@@ -22,6 +22,7 @@ class PressurePass {
           partners_(components<D>(particles, field::position), particles.data(field::smoothing_length),
                     Settings::support()),
           records_(particles, table, which) {
+        partners_.search_by_blocks(particles.size() + (which == Cells::interior ? 0 : particles.halo_size()));
         records_.copy(place_position, components<D>(particles, field::position));
         records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));
         records_.copy(place_volume, components<1>(particles, field::volume));
@@ -86,7 +87,10 @@ class PressurePass {
             const Lanes mean_wave = 0.5 * (own[place_wave_speed] + other[place_wave_speed]);
             const Lanes viscosity = -settings_.viscosity * (mean_wave - 0.5 * closing) * closing /
                                     (own[place_depth] + other[place_depth]);
-            fastest = max(fastest, mean_wave - closing);
+            // As if it came from the edge of the own kernel: what is further off acts over its own kernel.
+            fastest =
+                max(fastest, (mean_wave - closing) /
+                                 max(distance * own[place_inverse_s] / Settings::support(), Lanes(1.0)));
             const Lanes volume = other[place_volume];
             const Lanes of_own = own[place_factor] * (volume - own[place_grad_h]) * own_slope,
                         of_other = other[place_factor] *

@@ -42,6 +42,7 @@ struct Settings {
     double density = 1000;                ///< of the flow [kg/m3]
     double eta = 1.3;                     ///< smoothing length over (volume/height)^(1/D)
     double largest_smoothing_length = 0;  ///< cap, where columns fly apart [m]
+    double merging_distance = 0;          ///< of columns that become one [m]; 0: none do
     double viscosity = 1;                 ///< of approaching columns, in terms of a Riemann problem's [1]
     bool curvature = true;                ///< of the bed, in the pressure on it; form = bed_fitted only
     std::optional<EarthPressure> earth_pressure{};  ///< none: hydrostatic

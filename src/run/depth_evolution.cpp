@@ -121,6 +121,7 @@ std::vector<CsvColumn> DepthEvolution::diagnostics_columns() const {
     if (setup_.simulation.settings.two_phase)
         columns.insert(columns.end(),
                        {{"water_volume", "m3"}, {"water_centre_x", "m"}, {"water_centre_y", "m"}});
+    if (setup_.simulation.settings.merging_distance > 0) columns.push_back({"columns", "1"});
     for (const Gauge& gauge : setup_.gauges) {
         columns.push_back({"depth_" + gauge.name, "m"});
         columns.push_back({"level_" + gauge.name, "m"});
@@ -138,6 +139,8 @@ Diagnostics DepthEvolution::diagnostics() {
         0};
     if (setup_.simulation.settings.two_phase)
         found.row.insert(found.row.end(), {t.water_volume, t.water_centre[0], t.water_centre[1]});
+    if (setup_.simulation.settings.merging_distance > 0)
+        found.row.push_back(static_cast<double>(simulation_->total_particles()));
     if (setup_.gauges.empty()) return found;
     for (const GaugeReading& reading : read_gauges(*simulation_, setup_.gauges)) {
         found.row.push_back(reading.depth);

@@ -55,7 +55,21 @@ void refuse_with_two_phase(const Section& root, const depth::Settings& settings)
     refuse(table, "internal_friction_angle", settings.earth_pressure.has_value());
     refuse(table, "entrainment", settings.entrainment > 0);
     refuse(table, "balance", settings.balance);
-    refuse(root.section("pore_pressure"), "", root.has("pore_pressure"));
+}
+
+/// What is not known of columns that merge.
+void refuse_with_merging(const Section& root, const depth::Settings& settings, const Box& box) {
+    const Section table = root.section("depth");
+    const auto refuse = [&](bool is_asked, const char* what) {
+        if (is_asked) table.error("merging_distance", fmt::format("is not available together with {}", what));
+    };
+    refuse(settings.two_phase.has_value(), "[two_phase]");
+    refuse(root.has("pore_pressure"), "[pore_pressure]");
+    refuse(settings.gradient == depth::Gradient::level, "gradient = \"level\"");
+    refuse(settings.earth_pressure.has_value(), "internal_friction_angle");
+    refuse(settings.balance, "a balanced lake");
+    for (int axis = 0; axis < box.dimension; ++axis)
+        refuse(box.boundary[static_cast<std::size_t>(axis)] != Boundary::open, "sides that are not open");
 }
 
 depth::Settings read_settings(const Section& root, int dimension, const DepthSetup& setup) {
@@ -76,6 +90,7 @@ depth::Settings read_settings(const Section& root, int dimension, const DepthSet
     settings.eta = table.number("eta", "1", settings.two_phase ? wide : narrow, {1, 4});
     settings.viscosity = table.number("viscosity", "1", by_level ? 2.0 : 1.0, not_negative);
     settings.courant = table.number("courant", "1", 0.4, {0, 1, true});
+    settings.merging_distance = table.number("merging_distance", "m", 0.0, not_negative);
     settings.entrainment = table.number("entrainment", "m-1", 0.0, not_negative);
     if (fitted) settings.curvature = table.flag("curvature", true);
     if (!fitted && any_level(root))
@@ -87,6 +102,7 @@ depth::Settings read_settings(const Section& root, int dimension, const DepthSet
         if (settings.earth_pressure) table.error("internal_friction_angle", "needs gradient = \"potential\"");
     }
     if (settings.two_phase) refuse_with_two_phase(root, settings);
+    if (settings.merging_distance > 0) refuse_with_merging(root, settings, setup.box);
     return settings;
 }
 
@@ -114,8 +130,14 @@ void read_releases(const Communicator& comm, const Scene& scene, const SceneTerr
         }
     }
     if (scene.faulty()) return;
+    const double merging = setup.simulation.settings.merging_distance;
     for (std::size_t k = 0; k < table_of.size(); ++k) {
         const Section& table = *table_of[k];
+        if (merging >= setup.releases[k].spacing)
+            root.section("depth").error(
+                "merging_distance",
+                fmt::format("would merge {} as it is released, {:.4g} m apart; allowed: less",
+                            setup.releases[k].name, setup.releases[k].spacing));
         const auto [released, beyond, unknown, cut, outside_box] =
             columns_of(setup.releases[k], *setup.simulation.terrain, setup.simulation.settings, box);
         if (unknown)

@@ -58,9 +58,17 @@ class Depth(Case):
     def test_two_phases_refuse_what_is_not_known_of_them(self):
         fraction = "depth = 1\nsolid_fraction = 0.5"
         scene = SCENE.replace("depth = 1", fraction).replace(
-            '[friction]', 'entrainment = 0.1\n[two_phase]\nsettling_velocity = 1\n[pore_pressure]\nconsolidation = 1\n[friction]')
+            '[friction]', 'entrainment = 0.1\n[two_phase]\nsettling_velocity = 1\n[friction]')
         done = talus("run", self.scene(scene), "--out", self.out, ranks=0)
-        self.assert_fails(done, 2, r"depth\.entrainment = .*not available together with \[two_phase\]", "pore_pressure.*not available")
+        self.assert_fails(done, 2, r"depth\.entrainment = .*not available together with \[two_phase\]")
+
+    def test_columns_that_merge_refuse_what_is_not_known_of_them(self):
+        self.check('[friction]', 'merging_distance = 0.1\n[pore_pressure]\nconsolidation = 1\n[friction]',
+                   r"depth\.merging_distance = 0\.1 .*not available together with \[pore_pressure\]")
+
+    def test_columns_that_would_merge_at_the_start(self):
+        self.check('[friction]', 'merging_distance = 0.1\n[friction]',
+                   r"depth\.merging_distance = 0\.1 .*would merge .*0\.1 m apart; allowed: less")
 
     def test_solid_that_floats(self):
         self.check('[friction]', '[two_phase]\nsolid_density = 900\nsettling_velocity = 1\n[friction]',

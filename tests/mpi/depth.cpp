@@ -52,6 +52,17 @@ DepthScene avalanche() {
     return scene;
 }
 
+/// Two flows run into each other, and columns that crowd between them merge.
+DepthScene crowd() {
+    DepthScene scene = avalanche();
+    scene.simulation.settings.earth_pressure.reset();
+    scene.simulation.settings.merging_distance = 1.6;
+    scene.releases = {cap(30, 2), cap(-12, 2)};
+    scene.releases.front().velocity = {-9, 1, 0};
+    scene.releases.back().velocity = {9, 0, 0};
+    return scene;
+}
+
 /// A lake and a flood that runs into it between walls.
 DepthScene flooded_lake() {
     DepthScene scene;
@@ -82,6 +93,7 @@ DepthScene debris() {
     setup.settings.eta = 2;
     setup.settings.largest_smoothing_length = 12;
     setup.settings.two_phase = depth::TwoPhase{.speed = 0.5};
+    setup.pore_pressure = PorePressure{.law = {.coefficient = 0.1}, .points = 3, .ratio = 0.8};
     setup.settings.two_phase->water_friction = depth::Manning{.roughness = 0.05};
     scene.releases = {cap(25, 3)};
     scene.releases.front().solid_fraction = 0.7;
@@ -147,6 +159,7 @@ TEST_P(DepthSameBits, AfterInterruption) {
     for (const int stop : {1, 23}) {
         DepthSimulation first(world, setup_of(scene, {}), make_columns(world, scene));
         first.start();
+        const std::uint64_t released = first.total_particles();
         for (int k = 0; k < stop; ++k) first.step();
         const GatheredState saved = gather_state(world, first.particles());
         std::map<std::string, double> numbers;
@@ -157,17 +170,22 @@ TEST_P(DepthSameBits, AfterInterruption) {
         fill(share, saved, [&](std::size_t k) { return k % ranks == rank; });
         DepthSimulation second(world, setup_of(scene, {PartitionMethod::bisection, 5}), std::move(share));
         second.resume(first.time(), first.time_step(), first.step_count(), numbers);
+        const std::uint64_t at_stop = second.total_particles();
         for (int k = stop; k < steps; ++k) second.step();
+        if (scene.simulation.settings.merging_distance > 0 && stop > 1) {
+            EXPECT_LT(at_stop, released) << "columns must merge before";
+            EXPECT_LT(second.total_particles(), at_stop) << "and after";
+        }
         EXPECT_EQ(state_hash(world, second.particles()), hash_alone(GetParam())) << "stopped at " << stop;
     }
 }
 
 std::string name_of(const testing::TestParamInfo<DepthScene (*)()>& scene) {
-    constexpr const char* names[] = {"Avalanche", "FloodedLake", "Break1D", "Debris"};
+    constexpr const char* names[] = {"Avalanche", "FloodedLake", "Break1D", "Debris", "Crowd"};
     return names[scene.index];
 }
-INSTANTIATE_TEST_SUITE_P(Scenes, DepthSameBits, testing::Values(avalanche, flooded_lake, break_1d, debris),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, DepthSameBits,
+                         testing::Values(avalanche, flooded_lake, break_1d, debris, crowd), name_of);
 
 // What is there at the end and what has left is what was released: nothing is taken up here.
 TEST(DepthVolume, IsThereOrHasLeft) {
@@ -185,6 +203,35 @@ TEST(DepthVolume, IsThereOrHasLeft) {
     EXPECT_NEAR(run.totals().volume + run.outflow().volume(), released, 1e-13 * released);
     EXPECT_NE(run.outflow().take_note().find("have left the terrain"), std::string::npos);
     EXPECT_TRUE(run.outflow().take_note().empty());
+}
+
+// Merged columns lose neither volume nor momentum: nothing but the flow's collision acts here.
+TEST(DepthMerging, KeepsVolumeAndMomentum) {
+    const Communicator world(MPI_COMM_WORLD);
+    DepthScene scene = crowd();
+    DepthSetup& setup = scene.simulation;
+    setup.settings.entrainment = 0;
+    setup.settings.form = depth::Form::cartesian;
+    setup.terrain = std::make_shared<const Terrain>(0.0, std::array<double, 2>{});
+    setup.friction = depth::Frictionless{};
+    DepthSimulation run(world, setup_of(scene, {}), make_columns(world, scene));
+    run.start();
+    const DepthTotals before = run.totals();
+    const std::uint64_t released = run.total_particles();
+    for (int k = 0; k < 2 * steps; ++k) run.step();
+    const DepthTotals after = run.totals();
+    EXPECT_LT(run.total_particles(), released - released / 20);
+    EXPECT_GT(run.total_particles(), released / 4);
+    EXPECT_NEAR(after.volume, before.volume, 1e-13 * before.volume);
+    const double density = setup.settings.density;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        EXPECT_NEAR(after.momentum[axis], before.momentum[axis], 1e-12 * density * before.volume * 9);
+        // The centre of all moves as without merging.
+        EXPECT_NEAR(after.centre[axis],
+                    before.centre[axis] + before.momentum[axis] / (density * before.volume) * run.time(),
+                    1e-11);
+    }
+    EXPECT_LT(after.kinetic_energy + after.potential_energy, before.kinetic_energy + before.potential_energy);
 }
 
 // On every rank, naming a particle that it has reached, and no rank hangs.

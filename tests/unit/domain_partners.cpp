@@ -186,6 +186,43 @@ TEST(Partners, OneRadiusForEachParticle) {
     EXPECT_EQ(exact.count(), 0u) << "a distance equal to the radius is outside";
 }
 
+TEST(Partners, OfUnlikeRadiiAreThoseOfBruteForceWithBlocksAndWithout) {
+    // The first 200 of 203 particles in two runs, cells of 1 to 7 particles; radii over two decades.
+    constexpr std::uint32_t count = 203, known = 200;
+    std::array<std::vector<double>, 2> x;
+    std::vector<double> radius;
+    for (std::uint64_t k = 0; k < count; ++k) {
+        for (std::uint32_t d = 0; d < 2; ++d) x[d].push_back(draws.uniform(k, 10 + d));
+        radius.push_back(0.01 * std::pow(100, draws.uniform(k, 12)));
+    }
+    const std::vector<talus::Run> runs{{0, 61}, {75, known}};
+    const auto is_in_a_run = [](std::uint32_t j) { return j < 61 || (75 <= j && j < known); };
+    Partners<2> plain({x[0].data(), x[1].data()}, radius.data(), 1),
+        blocks({x[0].data(), x[1].data()}, radius.data(), 1);
+    blocks.search_by_blocks(known);
+    std::size_t pairs = 0;
+    for (std::uint32_t begin = 75, size = 1; begin + size <= known; begin += size, size = size % 7 + 1) {
+        for (Partners<2>* partners : {&plain, &blocks}) {
+            partners->enter({begin, begin, begin + size, false, false}, runs);
+            for (std::uint32_t i = begin; i < begin + size; ++i) {
+                std::vector<std::uint32_t> within, mutual;
+                for (std::uint32_t j = 0; j < known; ++j) {
+                    const double r = std::hypot(x[0][i] - x[0][j], x[1][i] - x[1][j]);
+                    if (j == i || !is_in_a_run(j)) continue;
+                    if (r < radius[i]) within.push_back(j);
+                    if (r < std::max(radius[i], radius[j])) mutual.push_back(j);
+                }
+                partners->find(i, 1);
+                EXPECT_EQ(std::vector(partners->index().begin(), partners->index().end()), within);
+                partners->find_mutual(i, 1);
+                EXPECT_EQ(std::vector(partners->index().begin(), partners->index().end()), mutual);
+                pairs += mutual.size();
+            }
+        }
+    }
+    EXPECT_GT(pairs, 1000u);
+}
+
 TEST(Partners, NoneInAnEmptyTable) {
     CellTable table;
     table.build({}, 3, 2);

@@ -106,6 +106,36 @@ TEST(DepthTwoPhase, DragEndsTheRelativeVelocity) {
     EXPECT_GT(order_of(errors.front(), errors.back()), 0.85);
 }
 
+// Solid of an even layer that slides through standing water is slowed down by what its grains bear, mu (1 -
+// w) g (1 - r exp(-t/T)), T = 4 h^2/(pi^2 c_v), with h the depth of both: v = v_0 - mu (1 - w) g (t - r T (1
+// - exp(-t/T))). First order of the step.
+TEST(DepthTwoPhase, ExcessPorePressureBearsTheSolid) {
+    const Communicator comm(MPI_COMM_SELF);
+    Layer layer;
+    layer.phases.drag = depth::DragLaw::none;
+    layer.friction = depth::Coulomb{.friction = 0.5};
+    constexpr double share = 0.9, coefficient = 0.6, first = 8;
+    const double pi = std::numbers::pi, delay = 4 * layer.depth * layer.depth / (pi * pi * coefficient);
+    const double slowing = 0.5 * (1 - layer.phases.buoyancy()) * gravity;
+    std::vector<double> errors;
+    for (const double courant : {0.1, 0.05}) {
+        DepthScene scene = scene_of(layer);
+        scene.simulation.settings.courant = courant;
+        scene.simulation.pore_pressure = PorePressure{.law = {.coefficient = coefficient}, .ratio = share};
+        DepthSimulation flow =
+            moving(comm, scene, [](bool is_water, double) { return is_water ? 0 : first; });
+        while (flow.time() < 1.5) flow.step();
+        const double t = flow.time();
+        const double exact = first - slowing * (t - share * delay * (1 - std::exp(-t / delay)));
+        errors.push_back(std::abs(mean_velocity(flow, false) / exact - 1));
+        fmt::print("excess pore pressure: solid {:.6f}, exact {:.6f} m/s, drained {:.3f}\n",
+                   mean_velocity(flow, false), exact, first - slowing * t);
+        EXPECT_NEAR(mean_velocity(flow, true), 0, 1e-12);
+    }
+    EXPECT_LT(errors.back(), 1e-6);
+    EXPECT_GT(order_of(errors.front(), errors.back()), 0.85);
+}
+
 /// Small waves without drag: squares c^2 of their speeds, the eigenvalues of
 ///   h_s g (1 + (1 - w) h_w/(2 h_s))   h_s g (1 + w)/2
 ///   h_w g                             h_w g
