@@ -39,6 +39,7 @@ void RecordHalo::choose(Halo& halo, std::size_t own, std::span<const std::uint8_
     MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
 
     shifts_.clear();
+    sent_records_.clear();
     outgoing_.resize(to.size());
     for (std::size_t k = 0; k < to.size(); ++k) {
         Outgoing& outgoing = outgoing_[k];
@@ -57,8 +58,12 @@ void RecordHalo::choose(Halo& halo, std::size_t own, std::span<const std::uint8_
             for (std::uint32_t i = cell.begin; i < cell.end; ++i)
                 if (*wish++) outgoing.sent.push_back({i, shift});
         }
-        if (outgoing.rank != comm_.rank()) outgoing.buffer.resize(outgoing.sent.size() * refreshed_);
+        if (outgoing.rank == comm_.rank()) continue;
+        outgoing.buffer.resize(outgoing.sent.size() * refreshed_);
+        for (const Sent& sent : outgoing.sent) sent_records_.push_back(sent.record);
     }
+    std::ranges::sort(sent_records_);
+    sent_records_.erase(std::unique(sent_records_.begin(), sent_records_.end()), sent_records_.end());
 }
 
 void RecordHalo::copy(const double* record, const Sent& sent, double* to) const {
@@ -106,7 +111,7 @@ void RecordHalo::finish(std::span<double> records) {
 }
 
 std::size_t RecordHalo::bytes() const {
-    std::size_t bytes = 0;
+    std::size_t bytes = sent_records_.capacity() * sizeof(std::uint32_t);
     for (const Outgoing& outgoing : outgoing_)
         bytes += outgoing.sent.capacity() * sizeof(Sent) + outgoing.buffer.capacity() * sizeof(double);
     for (const Incoming& incoming : incoming_)

@@ -21,13 +21,8 @@ class RecordHalo {
     /// of copies; `own`: number of own particles. The halo must have no mirror images. Collective.
     void choose(Halo& halo, std::size_t own, std::span<const std::uint8_t> wanted);
 
-    /// Calls visit(i) for the own records that other ranks are sent.
-    template <class Visit>
-    void for_each_sent(Visit&& visit) const {
-        for (const Outgoing& outgoing : outgoing_)
-            if (outgoing.rank != comm_.rank())
-                for (const Sent& sent : outgoing.sent) visit(std::size_t{sent.record});
-    }
+    /// The own records that other ranks are sent, each once, in order.
+    std::span<const std::uint32_t> sent_records() const { return sent_records_; }
 
     /// Starts refreshing. The own records that others are sent must not change until finish().
     void begin(std::span<double> records);
@@ -57,6 +52,7 @@ class RecordHalo {
     std::size_t width_, refreshed_;
     Halo* halo_ = nullptr;
     std::vector<std::array<double, 3>> shifts_;
+    std::vector<std::uint32_t> sent_records_;
     std::vector<Outgoing> outgoing_;
     std::vector<Incoming> incoming_;
     std::vector<MPI_Request> requests_;

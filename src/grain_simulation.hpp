@@ -44,9 +44,9 @@ struct GrainSetup {
     double time_step = 0;  ///< the same throughout [s]
     double skin = 0;       ///< gap up to which pairs are listed [m]; no result depends on it
     PartitionMethod partition = PartitionMethod::cheapest;
-    int rebalance_interval = 10;              ///< steps between looks at the imbalance, at least
-    GrainFlowPlan flow{};                     ///< not of scenes with clumps, sinks not of scenes with bonds
-    std::optional<GrainSettling> settling{};  ///< not of scenes with clumps
+    int rebalance_interval = 10;  ///< steps between looks at the imbalance, at least
+    GrainFlowPlan flow{};         ///< sinks not of scenes with bonds
+    std::optional<GrainSettling> settling{};
     /// Cells of a fluid that the grains are in: ranks own grains as they own these
     /// (GrainSimulation::follow()).
     std::optional<CellGrid> fluid_cells{};
@@ -61,7 +61,8 @@ struct GrainTotals {
     std::array<double, 3> angular_momentum{};  ///< about the origin, spin included [kg m2/s]
     double greatest_speed = 0;
     double greatest_overlap = 0;  ///< over the smaller radius [1]
-    std::uint64_t grains = 0, contacts = 0, wall_contacts = 0;
+    std::uint64_t grains = 0;     ///< a clump is one, as in the coordination
+    std::uint64_t contacts = 0, wall_contacts = 0;
     std::uint64_t bonds = 0, broken_bonds = 0;
     /// Of the grains on each wall at the last evaluation [N], and their torques about the centre of its
     /// motion, which is carried along with it [N m].

@@ -28,12 +28,13 @@ GrainTotals GrainSimulation::totals() const {
     const std::uint8_t* body = grains_.data(field::body);
     const double* attraction = gravity_ ? grains_.data(field::gravity_potential) : nullptr;
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
-    // Contacts, at walls, grains that are not held, bonds, ends of broken ones.
-    std::array<std::uint64_t, 5> counts{};
+    // Contacts, at walls, grains that are not held, bonds, ends of broken ones, grains.
+    std::array<std::uint64_t, 6> counts{};
     for (std::size_t i = 0; i < grains_.size(); ++i) {
+        if (!clumps_.counts(body[i], grains_.data(field::id)[i])) continue;
+        ++counts[5];
         counts[2] += setup_.held[body[i]] ? 0 : 1;
         const dem::ClumpBody* clump = clumps_.of_body(body[i]);
-        if (clump && clump->sphere(grains_.data(field::id)[i]) > 0) continue;  // its clump is counted once
         const Field<double>&centre = clump ? field::clump_centre : field::position,
               &velocity = clump ? field::clump_velocity : field::velocity;
         double speed2 = 0, spin2 = 0, potential_per_mass = attraction ? 0.5 * attraction[i] : 0;
@@ -117,7 +118,7 @@ GrainTotals GrainSimulation::totals() const {
             .angular_momentum = {sums[lx].value(), sums[ly].value(), sums[lz].value()},
             .greatest_speed = greatest[0],
             .greatest_overlap = greatest[1],
-            .grains = total_grains(),
+            .grains = counts[5],
             .contacts = counts[0],
             .wall_contacts = counts[1],
             .bonds = counts[3],

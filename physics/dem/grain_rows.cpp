@@ -24,15 +24,40 @@ void GrainRows::reset(const ParticleSet& grains, std::span<const double> units,
     }
 }
 
+namespace {
+
+/// What predict() reads.
+struct MotionFields {
+    explicit MotionFields(const ParticleSet& grains) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto c = static_cast<std::size_t>(axis);
+            x[c] = grains.data(field::position, axis);
+            v[c] = grains.data(field::velocity, axis);
+            w[c] = grains.data(field::angular_velocity, axis);
+        }
+    }
+    std::array<const double*, 3> x, v, w;
+};
+
+}  // namespace
+
+void GrainRows::predict(const ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
+                        std::span<const std::uint32_t> some) {
+    const MotionFields of(grains);
+    for (const std::uint32_t i : some) {
+        const Rates rate = rates_in(rates[i]);
+        double* row = values_.data() + i * width;
+        for (std::size_t c = 0; c < 3; ++c) {
+            row[c] = of.x[c][i];
+            row[4 + c] = of.v[c][i] + time_step * rate.acceleration[c];
+            row[7 + c] = of.w[c][i] + time_step * rate.angular_acceleration[c];
+        }
+    }
+}
+
 void GrainRows::predict(const ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
                         std::size_t begin, std::size_t end) {
-    std::array<const double*, 3> x, v, w;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto c = static_cast<std::size_t>(axis);
-        x[c] = grains.data(field::position, axis);
-        v[c] = grains.data(field::velocity, axis);
-        w[c] = grains.data(field::angular_velocity, axis);
-    }
+    const auto [x, v, w] = MotionFields(grains);
     const double* radius = grains.data(field::radius);
     std::array<double, width> none;  // where lanes without a grain store
     std::array<double*, lane_count> rows;

@@ -29,6 +29,9 @@ class GrainRows {
     /// before: D. Vyas, J. M. Ottino, R. M. Lueptow, P. B. Umbanhowar, arXiv 2410.14798 (2024).
     void predict(const ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
                  std::size_t begin, std::size_t end);
+    /// The same of some own grains, to the same bits.
+    void predict(const ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
+                 std::span<const std::uint32_t> some);
 
     /// In place of what predict() found for grain i.
     void put_velocities(std::size_t i, const Vector3<>& velocity, const Vector3<>& angular_velocity) {

@@ -10,6 +10,7 @@
 
 #include "comm/exact_sum.hpp"
 #include "domain/boundary.hpp"
+#include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
 #include "domain/random.hpp"
 
@@ -19,6 +20,14 @@ namespace {
 
 double sphere_mass(double radius, double density) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density;
+}
+
+/// Brought back into the box.
+Point inside(const Box& box, Point place) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (box.boundary[axis] == Boundary::periodic)
+            place[axis] = wrapped(place[axis], box.lower[axis], box.upper[axis]);
+    return place;
 }
 
 bool overlap(const Box& box, const Point& a, double radius_a, const Point& b, double radius_b) {
@@ -82,9 +91,44 @@ bool touches_wall(const FlowMoment& now, const Point& place, double radius) {
 struct GrainFlow::Candidate {
     std::size_t source;
     std::uint64_t attempt;
-    double radius;
     Point place;
+    dem::Quaternion orientation;
+    std::uint32_t first;  ///< of its spheres
 };
+
+struct GrainFlow::Candidates {
+    struct Sphere {
+        Point place;
+        double radius;
+        std::uint32_t candidate;
+    };
+    std::vector<Candidate> grains;
+    std::vector<Sphere> spheres;
+
+    void add(const Box& box, const Candidate& grain, const dem::ClumpShape* clump, double radius) {
+        grains.push_back(grain);
+        grains.back().first = static_cast<std::uint32_t>(spheres.size());
+        const auto index = static_cast<std::uint32_t>(grains.size() - 1);
+        if (!clump) {
+            spheres.push_back({grain.place, radius, index});
+            return;
+        }
+        const dem::RotationMatrix axes(grain.orientation);
+        for (std::size_t k = 0; k < clump->radii.size(); ++k) {
+            const dem::Vector3<> arm = axes.turned(clump->centres[k]);
+            spheres.push_back(
+                {inside(box, plus(grain.place, {arm.x, arm.y, arm.z})), clump->radii[k], index});
+        }
+    }
+    std::span<const Sphere> spheres_of(std::size_t k) const {
+        const std::size_t end = k + 1 < grains.size() ? grains[k + 1].first : spheres.size();
+        return std::span(spheres).subspan(grains[k].first, end - grains[k].first);
+    }
+};
+
+double GrainSource::greatest_radius() const {
+    return clump ? std::ranges::max(clump->radii) : sizes.greatest;
+}
 
 GrainFlow::GrainFlow(const Communicator& comm, const Box& box, GrainFlowPlan plan, double largest_radius)
     : comm_(comm),
@@ -94,10 +138,15 @@ GrainFlow::GrainFlow(const Communicator& comm, const Box& box, GrainFlowPlan pla
       came_(plan_.sources.size()),
       noted_(plan_.sources.size(), false) {}
 
-void GrainFlow::begin(const ParticleSet& grains) {
-    first_count_ = comm_.all_sum(static_cast<std::uint64_t>(grains.size()));
-    next_id_ = 0;
-    for (const std::uint64_t id : grains.own(field::id)) next_id_ = std::max(next_id_, id + 1);
+void GrainFlow::begin(const ParticleSet& grains, const dem::ClumpMotion& clumps) {
+    first_count_ = next_id_ = 0;
+    const std::uint64_t* id = grains.data(field::id);
+    const std::uint8_t* body = grains.data(field::body);
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+        next_id_ = std::max(next_id_, id[i] + 1);
+        if (clumps.counts(body[i], id[i])) ++first_count_;
+    }
+    first_count_ = comm_.all_sum(first_count_);
     next_id_ = comm_.all_max(next_id_);
 }
 
@@ -120,9 +169,9 @@ void GrainFlow::save(std::map<std::string, double>& numbers) const {
     }
 }
 
-void GrainFlow::restore(const std::map<std::string, double>& numbers, double time,
-                        const ParticleSet& grains) {
-    begin(grains);
+void GrainFlow::restore(const std::map<std::string, double>& numbers, double time, const ParticleSet& grains,
+                        const dem::ClumpMotion& clumps) {
+    begin(grains, clumps);
     for (std::size_t s = 0; s < came_.size(); ++s)  // what a new source was not there to insert is not due
         came_[s].due = plan_.sources[s].rate * std::max(time - plan_.sources[s].begin, 0.0);
     if (plan_.empty() || !numbers.contains("flow.first_count")) return;
@@ -177,10 +226,10 @@ Decomposition::Ledger GrainFlow::remove(ParticleSet& grains, const FlowMoment& n
     if (acting.empty()) return {};
     const std::uint8_t* body = grains.data(field::body);
     std::vector<std::uint32_t> kept;
-    std::vector<std::uint64_t> counts(passed_.size() + 1);  // of each sink; sum of ids
+    std::vector<std::uint64_t> counts(passed_.size() + 2);  // of each sink; of spheres, sum of their ids
     std::vector<ExactSum> masses(passed_.size());
     for (std::size_t i = 0; i < grains.size(); ++i) {
-        const Point place = place_in_box(grains, i, grid_.box());
+        const Point place = place_in_box(grains, i, grid_.box(), now.clumps);
         const auto taker = std::find_if(acting.begin(), acting.end(), [&](std::size_t s) {
             return !now.held[body[i]] && plan_.sinks[s].region.contains(place);
         });
@@ -188,13 +237,15 @@ Decomposition::Ledger GrainFlow::remove(ParticleSet& grains, const FlowMoment& n
             kept.push_back(static_cast<std::uint32_t>(i));
             continue;
         }
+        const std::uint64_t id = grains.data(field::id)[i];
+        ++counts[passed_.size()];
+        counts.back() += id;
+        if (!now.clumps.counts(body[i], id)) continue;
         ++counts[*taker];
-        counts.back() += grains.data(field::id)[i];
         masses[*taker].add(grains.data(field::mass)[i]);
     }
     comm_.all_sum(std::span<std::uint64_t>(counts));
-    Decomposition::Ledger removed{{0, counts.back()}};
-    for (std::size_t s = 0; s < passed_.size(); ++s) removed.sums[0] += counts[s];
+    const Decomposition::Ledger removed{{counts[passed_.size()], counts.back()}};
     if (removed.count() == 0) return {};
     ExactSum::all_reduce(comm_, masses);
     for (std::size_t s = 0; s < passed_.size(); ++s) {
@@ -209,20 +260,34 @@ RandomStream GrainFlow::random(std::size_t source) const {
     return {plan_.seed, RandomPurpose::sources, static_cast<std::uint16_t>(source)};
 }
 
+namespace {
+constexpr std::uint32_t beyond_places = 1U << 31;
+}
+
 double GrainFlow::radius_of(std::size_t source, std::uint64_t attempt) const {
-    constexpr std::uint32_t beyond_places = 1U << 31;
     return plan_.sources[source].sizes.radius(random(source), attempt, beyond_places);
 }
 
-double GrainFlow::amount_of(std::size_t source, double radius) const {
+double GrainFlow::mass_of(std::size_t source, std::uint64_t attempt) const {
     const GrainSource& s = plan_.sources[source];
-    return s.by_mass ? sphere_mass(radius, s.density) : 1;
+    return s.clump ? s.density * s.clump->volume : sphere_mass(radius_of(source, attempt), s.density);
+}
+
+double GrainFlow::amount_of(std::size_t source, std::uint64_t attempt) const {
+    return plan_.sources[source].by_mass ? mass_of(source, attempt) : 1;
+}
+
+dem::Quaternion GrainFlow::orientation_of(std::size_t source, std::uint64_t attempt) const {
+    if (!plan_.sources[source].turned) return {};
+    std::array<double, 3> numbers{};
+    for (std::uint32_t k = 0; k < 3; ++k) numbers[k] = random(source).uniform(attempt, beyond_places + k);
+    return dem::evenly_spread_rotation(numbers);
 }
 
 bool GrainFlow::complete(std::size_t source) const {
     const Came& came = came_[source];
     const double there = plan_.sources[source].by_mass ? came.mass : static_cast<double>(came.count);
-    return there + amount_of(source, radius_of(source, came.attempts)) > plan_.sources[source].total;
+    return there + amount_of(source, came.attempts) > plan_.sources[source].total;
 }
 
 bool GrainFlow::inserting(double time) const {
@@ -233,7 +298,7 @@ bool GrainFlow::inserting(double time) const {
 }
 
 /// Appends a source's grains that are due, each with all places that may be tried.
-void GrainFlow::draw_due(std::size_t s, const FlowMoment& now, std::vector<Candidate>& candidates) {
+void GrainFlow::draw_due(std::size_t s, const FlowMoment& now, Candidates& candidates) {
     const GrainSource& source = plan_.sources[s];
     Came& came = came_[s];
     const double elapsed = std::min(now.time, source.end) - source.begin;
@@ -251,65 +316,69 @@ void GrainFlow::draw_due(std::size_t s, const FlowMoment& now, std::vector<Candi
     };
     double there = source.by_mass ? came.mass : static_cast<double>(came.count);
     for (;; ++came.attempts) {
-        const double radius = radius_of(s, came.attempts), amount = amount_of(s, radius);
+        const double amount = amount_of(s, came.attempts);
         if (came.due + amount > source.rate * elapsed || there + amount > source.total) return;
         came.due += amount;
         there += amount;
+        const double radius = source.clump ? 0 : radius_of(s, came.attempts);
+        const dem::Quaternion orientation = orientation_of(s, came.attempts);
         for (std::uint32_t t = 0; t < static_cast<std::uint32_t>(source.tries); ++t) {
             Point place = draw(came.attempts, t * most_draws);
             for (std::uint32_t d = 1; d < most_draws && !contains(source.region, place, 3); ++d)
                 place = draw(came.attempts, t * most_draws + d);
             if (!contains(source.region, place, 3)) continue;
-            for (int axis = 0; axis < 3; ++axis) {
-                const auto a = static_cast<std::size_t>(axis);
-                place[a] = now.places(axis, place[a]);
-                if (box.boundary[a] == Boundary::periodic)
-                    place[a] = wrapped(place[a], box.lower[a], box.upper[a]);
-            }
-            candidates.push_back({s, came.attempts, radius, place});
+            for (int axis = 0; axis < 3; ++axis)
+                place[static_cast<std::size_t>(axis)] =
+                    now.places(axis, place[static_cast<std::size_t>(axis)]);
+            place = inside(box, place);
+            candidates.add(box, {s, came.attempts, place, orientation, 0}, source.clump.get(), radius);
         }
     }
 }
 
 Decomposition::Ledger GrainFlow::insert(ParticleSet& grains, const FlowMoment& now) {
-    std::vector<Candidate> candidates;
+    Candidates candidates;
     for (std::size_t s = 0; s < plan_.sources.size(); ++s) draw_due(s, now, candidates);
-    if (candidates.empty()) return {};  // on every rank
+    const std::vector<Candidate>& wanted = candidates.grains;
+    const std::vector<Candidates::Sphere>& spheres = candidates.spheres;
+    if (wanted.empty()) return {};  // on every rank
     const Box& box = grid_.box();
     Nearby near(grid_);
-    for (std::size_t k = 0; k < candidates.size(); ++k)
-        near.add(candidates[k].place, static_cast<std::uint32_t>(k));
-    std::vector<int> blocked(candidates.size());
+    for (std::size_t k = 0; k < spheres.size(); ++k)
+        near.add(spheres[k].place, static_cast<std::uint32_t>(k));
+    std::vector<int> blocked(wanted.size());
     for (std::size_t i = 0; i < grains.size(); ++i) {
-        const Point place = place_in_box(grains, i, box);
+        const Point place = sphere_in_box(grains, i, box);
         const double radius = grains.data(field::radius)[i];
         near.visit(place, [&](std::uint32_t k) {
-            if (overlap(box, place, radius, candidates[k].place, candidates[k].radius)) blocked[k] = 1;
+            if (overlap(box, place, radius, spheres[k].place, spheres[k].radius))
+                blocked[spheres[k].candidate] = 1;
         });
     }
     comm_.all_max(std::span<int>(blocked));
 
     // From here on every rank does the same.
     Nearby taken(grid_);
-    std::vector<Candidate> accepted;
-    const auto is_free = [&](const Candidate& wanted) {
+    std::vector<std::size_t> accepted;
+    const auto is_free = [&](const Candidates::Sphere& sphere) {
         bool is = true;
-        taken.visit(wanted.place, [&](std::uint32_t k) {
-            is = is && !overlap(box, wanted.place, wanted.radius, accepted[k].place, accepted[k].radius);
+        taken.visit(sphere.place, [&](std::uint32_t k) {
+            is = is && !overlap(box, sphere.place, sphere.radius, spheres[k].place, spheres[k].radius);
         });
-        return is && !touches_wall(now, wanted.place, wanted.radius);
+        return is && !touches_wall(now, sphere.place, sphere.radius);
     };
     std::vector<std::uint64_t> missed(came_.size());
-    for (std::size_t k = 0; k < candidates.size();) {
-        const Candidate& first = candidates[k];
+    for (std::size_t k = 0; k < wanted.size();) {
+        const Candidate& first = wanted[k];
         bool placed = false;
-        for (; k < candidates.size() && candidates[k].source == first.source &&
-               candidates[k].attempt == first.attempt;
+        for (; k < wanted.size() && wanted[k].source == first.source && wanted[k].attempt == first.attempt;
              ++k) {
-            if (placed || blocked[k] || !is_free(candidates[k])) continue;
+            const std::span<const Candidates::Sphere> own = candidates.spheres_of(k);
+            if (placed || blocked[k] || !std::ranges::all_of(own, is_free)) continue;
             placed = true;
-            taken.add(candidates[k].place, static_cast<std::uint32_t>(accepted.size()));
-            accepted.push_back(candidates[k]);
+            for (const Candidates::Sphere& sphere : own)
+                taken.add(sphere.place, static_cast<std::uint32_t>(&sphere - spheres.data()));
+            accepted.push_back(k);
         }
         if (!placed) ++missed[first.source];
     }
@@ -325,13 +394,24 @@ Decomposition::Ledger GrainFlow::insert(ParticleSet& grains, const FlowMoment& n
 
     Decomposition::Ledger added;
     if (accepted.empty()) return added;  // the set stays as it is, with its copies
-    grains.resize(grains.size());        // copies would be taken for new grains
-    for (const Candidate& grain : accepted) {
-        const GrainSource& source = plan_.sources[grain.source];
-        const std::uint64_t id = next_id_++;
-        const double mass = sphere_mass(grain.radius, source.density);
-        ++came_[grain.source].count;
-        came_[grain.source].mass += mass;
+    const std::size_t before = grains.size();
+    grains.resize(before);  // copies would be taken for new grains
+    for (const std::size_t k : accepted) put(wanted[k], now, grains, added);
+    now.clumps.start(grains, now.places, before);
+    return added;
+}
+
+/// Makes a grain, or the spheres of a clump, each on one rank.
+void GrainFlow::put(const Candidate& grain, const FlowMoment& now, ParticleSet& grains,
+                    Decomposition::Ledger& added) {
+    const GrainSource& source = plan_.sources[grain.source];
+    const dem::ClumpBody* clump = now.clumps.of_body(source.body);
+    const double mass = mass_of(grain.source, grain.attempt);
+    ++came_[grain.source].count;
+    came_[grain.source].mass += mass;
+    const std::uint64_t first = clump ? clump->first_from(next_id_) : next_id_;
+    next_id_ = first + (clump ? clump->shape->radii.size() : 1);
+    for (std::uint64_t id = first; id < next_id_; ++id) {
         ++added.sums[0];
         added.sums[1] += id;
         if (id % static_cast<std::uint64_t>(comm_.size()) != static_cast<std::uint64_t>(comm_.rank()))
@@ -340,18 +420,27 @@ Decomposition::Ledger GrainFlow::insert(ParticleSet& grains, const FlowMoment& n
         grains.resize(i + 1);
         grains.data(field::id)[i] = id;
         grains.data(field::body)[i] = source.body;
-        grains.data(field::radius)[i] = grain.radius;
-        grains.data(field::mass)[i] = mass;
+        const auto set = [&](const Field<double>& field, const Point& value) {
+            for (int axis = 0; axis < 3; ++axis)
+                grains.data(field, axis)[i] = value[static_cast<std::size_t>(axis)];
+        };
         const Point gravity{now.gravity.x, now.gravity.y, now.gravity.z};
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto a = static_cast<std::size_t>(axis);
-            grains.data(field::position, axis)[i] = grain.place[a];
-            grains.data(field::velocity, axis)[i] = source.velocity[a];
-            grains.data(field::angular_velocity, axis)[i] = source.angular_velocity[a];
-            grains.data(field::acceleration, axis)[i] = gravity[a];
+        if (clump) {
+            const auto vector = [](const Point& p) { return dem::Vector3<>{p[0], p[1], p[2]}; };
+            dem::place_new_sphere(
+                grains, i, *clump, id - first,
+                dem::moving_clump(*clump, vector(grain.place), grain.orientation, vector(source.velocity),
+                                  vector(source.angular_velocity)));
+            set(field::clump_acceleration, gravity);
+            continue;
         }
+        grains.data(field::radius)[i] = radius_of(grain.source, grain.attempt);
+        grains.data(field::mass)[i] = mass;
+        set(field::position, grain.place);
+        set(field::velocity, source.velocity);
+        set(field::angular_velocity, source.angular_velocity);
+        set(field::acceleration, gravity);
     }
-    return added;
 }
 
 std::vector<std::string> GrainFlow::take_notes() { return std::exchange(notes_, {}); }

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "domain/cell_grid.hpp"
 #include "domain/particles.hpp"
 #include "domain/random.hpp"
+#include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/motion.hpp"
 #include "physics/dem/walls/wall.hpp"
 #include "src/flow/grain_region.hpp"
@@ -18,7 +20,7 @@
 
 namespace talus {
 
-/// Takes out the grains whose centre is in a region.
+/// Takes out the grains whose centre is in a region: clumps by theirs, whole.
 struct GrainSink {
     std::string name;
     GrainRegion region;
@@ -33,6 +35,8 @@ struct GrainSource {
     double density = 0;     ///< [kg/m3]
     BodyShape region;       ///< of their centres
     GrainSizes sizes{};
+    std::shared_ptr<const dem::ClumpShape> clump = {};       ///< in place of sizes, if any
+    bool turned = false;                                     ///< clumps are, each its own way
     Point velocity{}, angular_velocity{};                    ///< [m/s], [rad/s]
     bool by_mass = false;                                    ///< `rate` and `total` are masses, not numbers
     double rate = 0;                                         ///< [1/s], [kg/s]
@@ -40,6 +44,8 @@ struct GrainSource {
     double begin = 0, end = 1e300;                           ///< [s]
     std::uint64_t interval = 1;                              ///< steps between insertions
     int tries = 1;                                           ///< places tried for a grain before it is missed
+
+    double greatest_radius() const;  ///< of its spheres [m]
 };
 
 /// What comes and goes in a scene.
@@ -58,11 +64,13 @@ struct FlowMoment {
     std::span<const dem::Wall> walls;
     std::span<const dem::WallPose> poses;  ///< at `time`
     std::span<const std::uint8_t> held;    ///< one a body
-    const dem::Vector3<>& gravity;         ///< [m s-2]
+    const dem::ClumpMotion& clumps;
+    const dem::Vector3<>& gravity;  ///< [m s-2]
 };
 
-/// Grains that come and go, and the ledger of them. When something happens, and what, follows from time,
-/// steps and places of grains alone: it is the same on any number of ranks and across restarts.
+/// Grains that come and go, and the ledger of them, in which a clump is one grain. When something happens,
+/// and what, follows from time, steps and places of grains alone: it is the same on any number of ranks and
+/// across restarts.
 class GrainFlow {
   public:
     struct Passed {
@@ -75,7 +83,7 @@ class GrainFlow {
         double due = 0;   ///< part of rate times time that was tried so far [1], [kg]
     };
     struct Change {
-        Decomposition::Ledger added, removed;
+        Decomposition::Ledger added, removed;  ///< of spheres
         bool any() const { return added.count() + removed.count() > 0; }
     };
 
@@ -83,10 +91,11 @@ class GrainFlow {
     GrainFlow(const Communicator& comm, const Box& box, GrainFlowPlan plan, double largest_radius);
 
     /// A new run begins with these grains. Collective.
-    void begin(const ParticleSet& grains);
+    void begin(const ParticleSet& grains, const dem::ClumpMotion& clumps);
     /// Goes on with the ledger of the checkpoint that holds these grains; from one of a run without sinks and
     /// sources it begins. Throws AgreedError if grains begun with, come and gone do not add up. Collective.
-    void restore(const std::map<std::string, double>& numbers, double time, const ParticleSet& grains);
+    void restore(const std::map<std::string, double>& numbers, double time, const ParticleSet& grains,
+                 const dem::ClumpMotion& clumps);
     /// What a checkpoint must know.
     void save(std::map<std::string, double>& numbers) const;
 
@@ -104,13 +113,18 @@ class GrainFlow {
 
   private:
     struct Candidate;
+    struct Candidates;
     Decomposition::Ledger remove(ParticleSet& grains, const FlowMoment& now);
     Decomposition::Ledger insert(ParticleSet& grains, const FlowMoment& now);
     RandomStream random(std::size_t source) const;
     double radius_of(std::size_t source, std::uint64_t attempt) const;
-    double amount_of(std::size_t source, double radius) const;
+    double mass_of(std::size_t source, std::uint64_t attempt) const;
+    double amount_of(std::size_t source, std::uint64_t attempt) const;
+    dem::Quaternion orientation_of(std::size_t source, std::uint64_t attempt) const;
     bool complete(std::size_t source) const;
-    void draw_due(std::size_t source, const FlowMoment& now, std::vector<Candidate>& candidates);
+    void draw_due(std::size_t source, const FlowMoment& now, Candidates& candidates);
+    void put(const Candidate& grain, const FlowMoment& now, ParticleSet& grains,
+             Decomposition::Ledger& added);
 
     const Communicator& comm_;
     GrainFlowPlan plan_;

@@ -5,6 +5,7 @@
 
 #include "comm/communicator.hpp"
 #include "domain/particles.hpp"
+#include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/contact_loads.hpp"
 
 namespace talus {
@@ -18,9 +19,10 @@ struct GrainSettling {
     double damping = 0;            ///< velocities fall as exp(-t/damping) [s]; 0: they do not
 };
 
-/// Root of the mean square of the net forces, weight included, on the grains that are not held, over that of
-/// the forces of the contacts; infinite if nothing touches. Exact sums. Collective.
+/// Root of the mean square of the net forces, weight included, on the grains that are not held (a clump is
+/// one), over that of the forces of the contacts; infinite if nothing touches. Exact sums. Collective.
 double force_imbalance(const Communicator& comm, const ParticleSet& grains,
-                       std::span<const std::uint8_t> held, std::span<const dem::LoadedContact> contacts);
+                       std::span<const std::uint8_t> held, const dem::ClumpMotion& clumps,
+                       std::span<const dem::LoadedContact> contacts);
 
 }  // namespace talus

@@ -80,14 +80,8 @@ std::vector<std::string> GrainEvolution::preparations() const {
 }
 
 std::vector<std::string> GrainEvolution::news() {
-    constexpr double most = 0.05;  // of the smaller radius: tests/stability/grain_contacts.cpp
     std::vector<std::string> found = simulation_->take_notes();
-    if (told_of_overlap_ || greatest_overlap_ < most) return found;
-    told_of_overlap_ = true;
-    found.push_back(
-        fmt::format("time {:.4g} s: grains overlap by {:.2g} of the smaller radius; above {} contacts last "
-                    "longer and pack closer than those of hard grains: a greater stiffness?",
-                    time(), greatest_overlap_, most));
+    if (overlap_.is_due()) found.push_back(overlap_note(time(), overlap_.greatest()));
     return found;
 }
 
@@ -226,7 +220,7 @@ std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
 
 Diagnostics GrainEvolution::diagnostics() {
     const GrainTotals t = simulation_->totals();
-    greatest_overlap_ = std::max(greatest_overlap_, t.greatest_overlap);
+    overlap_.see(t.greatest_overlap);
     std::vector<double> row = {simulation_->time(),
                                t.mass,
                                t.kinetic_energy,
@@ -247,17 +241,17 @@ Diagnostics GrainEvolution::diagnostics() {
     for (const auto& force : t.wall_forces) row.insert(row.end(), force.begin(), force.end());
     if (torques_have_meaning())
         for (const auto& torque : t.wall_torques) row.insert(row.end(), torque.begin(), torque.end());
-    append_flow_values(simulation_->flow(), simulation_->total_grains(), row);
+    append_flow_values(simulation_->flow(), t.grains, row);
     if (setup_.regions.empty()) return {row, 0};
     const auto wants_stress = [](const WatchedRegion& region) { return region.stress; };
     std::vector<dem::LoadedContact> contacts;
     if (std::any_of(setup_.regions.begin(), setup_.regions.end(), wants_stress))
         contacts = simulation_->loaded_contacts();
     const GrainSimulation& now = *simulation_;
-    append_region_values(
-        setup_.regions,
-        region_states(comm_, now.grains(), now.setup().box, setup_.bodies.size(), setup_.regions, contacts),
-        row);
+    append_region_values(setup_.regions,
+                         region_states(comm_, now.grains(), now.setup().box, now.clumps(),
+                                       setup_.bodies.size(), setup_.regions, contacts),
+                         row);
     return {row, 0};
 }
 

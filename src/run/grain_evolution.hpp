@@ -3,6 +3,7 @@
 
 #include "src/grain_simulation.hpp"
 #include "src/run/evolution.hpp"
+#include "src/run/notes.hpp"
 #include "src/setup/grain_scene.hpp"
 #include "src/setup/shrink_grains.hpp"
 
@@ -62,8 +63,7 @@ class GrainEvolution : public Evolution {
     std::optional<ParticleSet> read_contacts_, read_bonds_;  ///< of the checkpoint, until resume()
     Shrunk shrunk_;                                          ///< at the start
     double first_overlap_ = 0;                               ///< over the radius [1]
-    double greatest_overlap_ = 0;                            ///< of what diagnostics saw, likewise
-    bool told_of_overlap_ = false;
+    Watch overlap_{most_overlap_of_hard_grains};             ///< of what diagnostics saw
 };
 
 }  // namespace talus

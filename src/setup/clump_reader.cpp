@@ -7,7 +7,9 @@
 
 namespace talus {
 
-std::shared_ptr<const dem::ClumpShape> read_clump(const Scene& scene, const Section& body) {
+namespace {
+
+std::shared_ptr<const dem::ClumpShape> read_shape_of_clump(const Scene& scene, const Section& body) {
     constexpr std::size_t most_spheres = 1000;
     const std::string name = body.text("clump");
     const Section table = scene.root().section("clumps").section(name);
@@ -27,6 +29,17 @@ std::shared_ptr<const dem::ClumpShape> read_clump(const Scene& scene, const Sect
     std::vector<dem::Vector3<>> centres;
     for (std::size_t k = 0; k < count; ++k) centres.push_back({x[k], y[k], z[k]});
     return std::make_shared<const dem::ClumpShape>(dem::clump_shape(centres, radii));
+}
+
+}  // namespace
+
+void read_clump(const Scene& scene, const Section& table, GrainBody& body) {
+    body.clump = read_shape_of_clump(scene, table);
+    body.turned = table.choice("orientation", {"random", "aligned"}, "random") == "random";
+    if (!body.clump) return;
+    const auto [least, greatest] = std::ranges::minmax(body.clump->radii);
+    body.least_radius = least;
+    body.greatest_radius = greatest;
 }
 
 }  // namespace talus

@@ -1,13 +1,11 @@
 #pragma once
-#include <memory>
-
 #include "io/scene.hpp"
-#include "physics/dem/clumps/clump_shape.hpp"
+#include "src/setup/grain_scene.hpp"
 
 namespace talus {
 
-/// The table [clumps.NAME] that a body of grains names by its key `clump`: the spheres' places `x`, `y`, `z`
-/// and `radii`. Null if it has a fault, which is recorded in the scene.
-std::shared_ptr<const dem::ClumpShape> read_clump(const Scene& scene, const Section& body);
+/// Reads the keys `clump` and `orientation` of a body of grains or a source, and the table [clumps.NAME];
+/// without a clump if it cannot be used: what is wrong is recorded in the scene.
+void read_clump(const Scene& scene, const Section& table, GrainBody& body);
 
 }  // namespace talus

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "src/setup/clump_reader.hpp"
 #include "src/setup/names.hpp"
 
 namespace talus {
@@ -38,9 +39,15 @@ GrainSource read_source(const Section& table, const BodyContext& context, GrainB
     GrainSource source;
     source.name = body.name;
     source.density = body.material.density;
-    source.sizes = body.sizes = read_grain_sizes(table);
-    body.least_radius = body.sizes.least;
-    body.greatest_radius = body.sizes.greatest;
+    if (table.has("clump")) {
+        read_clump(context.scene, table, body);
+        source.clump = body.clump;
+        source.turned = body.turned;
+    } else {
+        source.sizes = body.sizes = read_grain_sizes(table);
+        body.least_radius = body.sizes.least;
+        body.greatest_radius = body.sizes.greatest;
+    }
     source.region = read_shape(table, body.material.density, context);
     source.velocity = body.velocity = origin_default(table, "velocity", "m/s", 3);
     source.angular_velocity = body.angular_velocity = origin_default(table, "angular_velocity", "rad/s", 3);

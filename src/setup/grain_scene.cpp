@@ -66,12 +66,8 @@ std::vector<std::array<double, 10>> read_list(const Communicator& comm, const Sc
 void read_packing(const Section& table, const BodyContext& context, GrainBody& body) {
     double reached = 0;  // from a place [m]
     if (table.has("clump")) {
-        body.clump = read_clump(context.scene, table);
-        body.turned = table.choice("orientation", {"random", "aligned"}, "random") == "random";
+        read_clump(context.scene, table, body);
         if (!body.clump) return;
-        const auto [least, greatest] = std::ranges::minmax(body.clump->radii);
-        body.least_radius = least;
-        body.greatest_radius = greatest;
         reached = body.clump->bounding_radius;
     } else {
         body.sizes = read_grain_sizes(table);
@@ -154,10 +150,8 @@ std::vector<dem::ClumpBody> clumps_of(const std::vector<GrainBody>& bodies) {
     return clumps;
 }
 
-/// What is not known of clumps and bonds, under self-gravity and in sheared boxes.
-void refuse_together(const Section& root, bool clumps, bool bonds, bool self_gravity, bool sheared) {
-    for (const char* table : {"sink", "source", "region", "settle"})
-        if (clumps && root.has(table)) root.error(table, "does not go with clumps");
+/// What is not known of bonds, under self-gravity and in sheared boxes.
+void refuse_together(const Section& root, bool bonds, bool self_gravity, bool sheared) {
     if (bonds && root.has("sink"))
         root.error("sink", "does not go with bonds: a deleted grain would leave its own");
     constexpr std::string_view without_bonds = "knows contacts only, and the scene has bonds";
@@ -282,7 +276,7 @@ GrainScene read_grains_of(const Communicator& comm, const Scene& scene) {
     std::optional<GrainSettling> settling = read_settling(root, time_step, flow, walls);
     std::vector<WatchedRegion> regions = read_regions(root, context);
     const bool write_contacts = root.section("output").flag("contacts", false);
-    refuse_together(root, widest > 0, !bonds.empty(), self_gravity.has_value(), box.shear_rate != 0);
+    refuse_together(root, !bonds.empty(), self_gravity.has_value(), box.shear_rate != 0);
     return {.title = title,
             .simulation = {.box = box,
                            .laws = laws.table(),
@@ -337,29 +331,19 @@ std::vector<Row> packed(const GrainBody& body, const RandomStream& random, std::
     return rows;
 }
 
-/// A rotation as likely as any other: K. Shoemake, in: D. Kirk (ed.), Graphics Gems III (1992) 124.
-dem::Quaternion random_rotation(const RandomStream& random, std::uint64_t id) {
-    const double u = random.uniform(id, 4), a = 2 * std::numbers::pi * random.uniform(id, 5),
-                 b = 2 * std::numbers::pi * random.uniform(id, 6);
-    const double inner = std::sqrt(1 - u), outer = std::sqrt(u);
-    return {outer * std::cos(b), {inner * std::sin(a), inner * std::cos(a), outer * std::sin(b)}};
-}
-
 /// Makes grain i, whose id is `id`, a sphere of the clump at a row's place.
 void make_sphere(ParticleSet& grains, std::size_t i, const dem::ClumpBody& clump, const GrainBody& body,
                  const Row& row, std::uint64_t id, const RandomStream& random) {
     const std::uint64_t sphere = clump.sphere(id);
-    const bool moves = !body.held;
-    dem::ClumpState state;
-    state.centre = {row[0], row[1], row[2]};
-    if (body.turned) state.orientation = random_rotation(random, id - sphere);
-    const dem::Vector3<> spin{row[7], row[8], row[9]};
-    if (moves) {
-        state.velocity = {row[4], row[5], row[6]};
-        state.angular_momentum =
-            angular_momentum(spin, clump.inertia(), dem::RotationMatrix(state.orientation));
-    }
-    dem::place_new_sphere(grains, i, clump, sphere, state);
+    const double moves = body.held ? 0 : 1;
+    dem::Quaternion orientation;
+    if (body.turned)
+        orientation = dem::evenly_spread_rotation(
+            {random.uniform(id - sphere, 4), random.uniform(id - sphere, 5), random.uniform(id - sphere, 6)});
+    dem::place_new_sphere(grains, i, clump, sphere,
+                          dem::moving_clump(clump, {row[0], row[1], row[2]}, orientation,
+                                            moves * dem::Vector3<>{row[4], row[5], row[6]},
+                                            moves * dem::Vector3<>{row[7], row[8], row[9]}));
 }
 
 /// First id behind those of the grains of a file.

@@ -1,5 +1,7 @@
 #include "src/setup/shapes.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace talus {
@@ -131,6 +133,14 @@ bool contains(const BodyShape& shape, const Point& point, int dimension) {
 double volume(const BodyShape& shape, int dimension) { return std::visit(Volume{dimension}, shape); }
 
 BoxShape bounds(const BodyShape& shape, int dimension) { return std::visit(Bounds{dimension}, shape); }
+
+double thickness(const BodyShape& shape, int dimension) {
+    const BoxShape around = bounds(shape, dimension);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < static_cast<std::size_t>(dimension); ++a)
+        least = std::min(least, around.upper[a] - around.lower[a]);
+    return least;
+}
 
 Point centre(const BodyShape& shape) { return std::visit(Centre{}, shape); }
 

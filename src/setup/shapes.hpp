@@ -31,6 +31,8 @@ bool contains(const BodyShape& shape, const Point& point, int dimension);
 double volume(const BodyShape& shape, int dimension);
 /// Corners of the smallest box around the shape.
 BoxShape bounds(const BodyShape& shape, int dimension);
+/// Least extent along any axis [m].
+double thickness(const BodyShape& shape, int dimension);
 /// Middle of the shape, where lattices of round bodies are anchored.
 Point centre(const BodyShape& shape);
 /// The shape, moved.

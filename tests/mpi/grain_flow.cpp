@@ -69,7 +69,7 @@ TEST(GrainStress, OfAPressedLatticeIsForceOverArea) {
         "middle", BoxShape{{0, 0, low}, {lattice.length_x, lattice.length_y, low + 3 * lattice.spacing}}};
     const std::vector<WatchedRegion> regions{all, middle};
     const auto states =
-        region_states(world, run.grains(), run.setup().box, 1, regions, run.loaded_contacts());
+        region_states(world, run.grains(), run.setup().box, run.clumps(), 1, regions, run.loaded_contacts());
     EXPECT_EQ(states[0].count, nx * ny * nz);
     EXPECT_EQ(states[1].count, nx * ny * 3U);
     const double columns = nx * ny;
@@ -102,8 +102,8 @@ TEST(GrainStress, OfAGasIsItsFluxOfMomentum) {
     GrainSimulation run(world, grain_setup({rubber}, radius, 1e-6), grain_set(world, grains));
     run.start();
     const WatchedRegion region{"gas", BoxShape{{-0.01, -0.01, -0.01}, {0.11, 0.11, 0.11}}};
-    const auto state =
-        region_states(world, run.grains(), run.setup().box, 1, {&region, 1}, run.loaded_contacts())[0];
+    const auto state = region_states(world, run.grains(), run.setup().box, run.clumps(), 1, {&region, 1},
+                                     run.loaded_contacts())[0];
     const double bulk = state.mass / (0.12 * 0.12 * 0.12);
     EXPECT_NEAR(state.mass, 64 * mass_of(grains[0]), 1e-14 * state.mass);
     EXPECT_NEAR(state.solid_fraction, bulk / 1000, 1e-14);

@@ -5,6 +5,7 @@
 
 #include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
+#include "src/flow/region_statistics.hpp"
 #include "tests/support/grain_scene.hpp"
 
 /// Clumps of spheres under the whole step.
@@ -127,6 +128,86 @@ TEST(Clumps, ACloudKeepsWhatIsConserved) {
     EXPECT_LT(norm(angular() - turning), 1e-12 * scale * 0.05);
     for (std::uint64_t k = 0; k < 27; ++k)
         EXPECT_NEAR(norm(state_of(run, 2 * k).position - state_of(run, 2 * k + 1).position), 0.008, 1e-15);
+}
+
+// A periodic box is filled at once with dumbbells at rest that reach through its sides: none overlap.
+TEST(Clumps, ASourceFindsWhatIsAcrossTheSides) {
+    const Communicator comm(MPI_COMM_SELF);
+    constexpr double length = 0.05;
+    GrainSetup setup = dumbbells(hard, 1e-6);
+    const std::vector<Vector3<>> ends{{-0.012, 0, 0}, {0.012, 0, 0}};
+    setup.clumps[0].shape =
+        std::make_shared<dem::ClumpShape>(dem::clump_shape(ends, std::vector{radius, radius}));
+    setup.box = {
+        3, {0, 0, 0}, {length, length, length}, {Boundary::periodic, Boundary::periodic, Boundary::periodic}};
+    GrainSource rain{.name = "rain",
+                     .body = 0,
+                     .density = hard.density,
+                     .region = BoxShape{{0, 0, 0}, {length, length, length}},
+                     .clump = setup.clumps[0].shape,
+                     .turned = true,
+                     .rate = 1e9,
+                     .total = 100};
+    rain.tries = 100;
+    setup.flow = {{}, {rain}, 5};
+    GrainSimulation run(comm, setup, clump_set(comm, setup, {}));
+    run.start();
+    for (int k = 0; k < 3; ++k) run.step();
+    const GrainTotals totals = run.totals();
+    EXPECT_GT(run.flow().came()[0].count, 30U);
+    EXPECT_EQ(totals.contacts, 0U);
+    EXPECT_EQ(totals.kinetic_energy, 0);
+}
+
+// Dumbbells rain into a box that is periodic along x and y and settle on its floor. Forces balance to
+// `imbalance`; ten times that is asked of the floor's load, and of the stress 1e-3, for overlaps of that
+// share of a radius. Of clumps at rest the mean stress times the volume is sum m g z along z: -sum r f, r
+// from their centres, is sum m g z less the moment of the floor's forces, whose contacts lie half an overlap
+// below z = 0. A smooth floor bears no moment across.
+TEST(Clumps, ABedBearsItsWeight) {
+    const Communicator comm(MPI_COMM_SELF);
+    dem::GrainMaterial rough = hard;
+    rough.youngs_modulus = 1e7;
+    rough.restitution = 0.3;
+    rough.friction = 0.5;
+    constexpr double imbalance = 1e-5, length = 0.05;
+    constexpr std::uint64_t number = 40;
+    GrainSetup setup = dumbbells(rough, 2e-5);
+    setup.box = {3, {0, 0, 0}, {length, length, 0}, {Boundary::periodic, Boundary::periodic, Boundary::open}};
+    setup.gravity = {0, 0, -9.81};
+    setup.walls.push_back({"floor", 0, dem::PlaneShape{{}, {0, 0, 1}}, {}});
+    GrainSource rain{.name = "rain",
+                     .body = 0,
+                     .density = rough.density,
+                     .region = BoxShape{{0, 0, 0.01}, {length, length, 0.08}},
+                     .clump = setup.clumps[0].shape,
+                     .turned = true,
+                     .rate = 1e6,
+                     .total = number,
+                     .begin = -5};
+    rain.tries = 1000;
+    setup.flow = {{}, {rain}, 11};
+    setup.settling =
+        GrainSettling{.imbalance = imbalance, .lasting = 3, .interval = 100, .longest = 5, .damping = 0.02};
+    GrainSimulation run(comm, setup, clump_set(comm, setup, {}));
+    run.start();
+    while (run.time() < 0) run.step();
+    const GrainTotals totals = run.totals();
+    EXPECT_EQ(totals.grains, number);
+    EXPECT_EQ(run.total_grains(), 2 * number);
+    const double weight = 9.81 * static_cast<double>(number) * setup.clumps[0].mass();
+    EXPECT_NEAR(totals.wall_forces[0][2], -weight, 10 * imbalance * weight);
+    EXPECT_GT(totals.contacts, 2 * number);
+
+    const double height = 0.2, volume = length * length * height;
+    const WatchedRegion all{"all", BoxShape{{0, 0, 0}, {length, length, height}}};
+    const RegionState state = region_states(comm, run.grains(), run.setup().box, run.clumps(), 1, {&all, 1},
+                                            run.loaded_contacts())[0];
+    EXPECT_EQ(state.count, number);
+    EXPECT_NEAR(state.mass, totals.mass, 1e-14 * totals.mass);
+    EXPECT_NEAR(state.solid_fraction, static_cast<double>(number) * setup.clumps[0].shape->volume / volume,
+                1e-14);
+    EXPECT_NEAR(state.stress[2] * volume, totals.potential_energy, 1e-3 * totals.potential_energy);
 }
 
 // A clump that moves no finite way stops the run by a sphere of its own.

@@ -95,7 +95,8 @@ TEST(ShearedGrains, StressDoesNotDependOnLists) {
         const std::vector<dem::LoadedContact> contacts = run.loaded_contacts();
         EXPECT_GT(contacts.size(), 50U);
         const std::vector<WatchedRegion> all{{"all", BoxShape{{0, 0, 0}, {edge, edge, edge}}, true}};
-        stresses.push_back(region_states(comm, run.grains(), run.setup().box, 1, all, contacts)[0].stress);
+        stresses.push_back(
+            region_states(comm, run.grains(), run.setup().box, run.clumps(), 1, all, contacts)[0].stress);
     }
     EXPECT_NE(stresses[0][3], 0);
     EXPECT_EQ(stresses[0], stresses[1]);

@@ -39,6 +39,8 @@ struct ClumpFields {
     }
 };
 
+constexpr std::uint32_t absent = std::numeric_limits<std::uint32_t>::max();
+
 Vector3<> rounded(const PeriodicPlaces& places, const Vector3<>& v) {
     return {places(0, v.x), places(1, v.y), places(2, v.z)};
 }
@@ -53,6 +55,12 @@ ClumpState clump_state(const ParticleSet& grains, std::size_t i) {
             vector(field::clump_velocity),
             {grains.data(field::orientation_scalar)[i], vector(field::orientation_vector)},
             vector(field::clump_angular_momentum)};
+}
+
+ClumpState moving_clump(const ClumpBody& body, const Vector3<>& centre, const Quaternion& orientation,
+                        const Vector3<>& velocity, const Vector3<>& spin) {
+    return {centre, velocity, orientation,
+            angular_momentum(spin, body.inertia(), RotationMatrix(orientation))};
 }
 
 ClumpMotion::ClumpMotion(std::vector<ClumpBody> bodies, std::vector<std::uint8_t> held)
@@ -132,10 +140,11 @@ void place_new_sphere(ParticleSet& grains, std::size_t i, const ClumpBody& body,
     grains.data(field::mass)[i] = body.mass();
 }
 
-void ClumpMotion::start(ParticleSet& grains, const PeriodicPlaces& places) const {
+void ClumpMotion::start(ParticleSet& grains, const PeriodicPlaces& places, std::size_t first) const {
     if (!exists_) return;
     const ClumpFields clump(grains);
     for_each_sphere(grains, [&](std::size_t i, const ClumpBody& body, std::size_t sphere) {
+        if (i < first) return;
         const ClumpState state = clump.state(i);
         const Vector3<> centre = rounded(places, state.centre),
                         arm = RotationMatrix(state.orientation).turned(body.shape->centres[sphere]);
@@ -201,14 +210,20 @@ std::function<bool(std::uint32_t, std::uint32_t)> ClumpMotion::inner_pairs(const
 }
 
 std::uint64_t ClumpMotion::find_spheres(const ParticleSet& grains) {
+    const std::uint64_t missing = list_spheres(grains);
+    if (missing != everybody) clumps_.clear();  // nobody can move them
+    return missing;
+}
+
+std::uint64_t ClumpMotion::list_spheres(const ParticleSet& grains) {
     clumps_.clear();
     spheres_.clear();
     if (!exists_) return everybody;
-    const std::uint64_t* id = grains.data(field::copied_id);
+    const std::uint64_t *id = grains.data(field::id), *copied_id = grains.data(field::copied_id);
     const std::uint8_t* body = grains.data(field::body);
     std::unordered_map<std::uint64_t, std::uint32_t> stored;
     for (std::uint32_t i = 0; i < grains.size_with_halo(); ++i)
-        if (of_body(body[i])) stored.emplace(id[i], i);
+        if (of_body(body[i])) stored.emplace(i < grains.size() ? id[i] : copied_id[i], i);
     std::uint64_t missing = everybody;
     for_each_sphere(grains, [&](std::size_t i, const ClumpBody& clump, std::uint64_t sphere) {
         const std::uint64_t first = id[i] - sphere;
@@ -221,7 +236,7 @@ std::uint64_t ClumpMotion::find_spheres(const ParticleSet& grains) {
         for (std::uint64_t k = 0; k < clump.shape->radii.size(); ++k) {
             const auto found = stored.find(first + k);
             if (found == stored.end()) missing = std::min(missing, id[i]);
-            spheres_.push_back(found == stored.end() ? static_cast<std::uint32_t>(i) : found->second);
+            spheres_.push_back(found == stored.end() ? absent : found->second);
         }
     });
     return missing;
@@ -242,7 +257,7 @@ void ClumpMotion::take_forces(ParticleSet& grains, std::span<const ForceSum> sum
 }
 
 double ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses, const Vector3<>& gravity,
-                                double kick_step, double time_step) const {
+                                double kick_step, double time_step, double remaining) const {
     if (!exists_) return 0;
     const ClumpFields clump(grains);
     const GrainVectors sphere_force(grains, field::sphere_force), sphere_torque(grains, field::sphere_torque),
@@ -261,8 +276,9 @@ double ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses,
                 torque += sphere_torque[spheres[k]] + cross(axes.turned(body.shape->centres[k]), on_sphere);
             }
             const Vector3<> now = (1 / body.mass()) * force + gravity;
-            state.velocity += half_kick * (clump.acceleration[some] + now);
-            state.angular_momentum += half_kick * (clump.torque[some] + torque);
+            state.velocity = remaining * (state.velocity + half_kick * (clump.acceleration[some] + now));
+            state.angular_momentum =
+                remaining * (state.angular_momentum + half_kick * (clump.torque[some] + torque));
             const Motion motion(body, state);
 
             // Each of the angles by which turned_freely() turns is at most time x momentum over moment.

@@ -21,6 +21,10 @@ struct ClumpBody {
     double density = 0;                       ///< [kg/m3]
 
     std::uint64_t sphere(std::uint64_t id) const { return (id - first_id) % shape->radii.size(); }
+    /// The first id at or above `id` that the first sphere of a clump may have.
+    std::uint64_t first_from(std::uint64_t id) const {
+        return sphere(id) == 0 ? id : id + shape->radii.size() - sphere(id);
+    }
     double mass() const { return density * shape->volume; }         ///< of a clump [kg]
     Vector3<> inertia() const { return density * shape->inertia; }  ///< principal moments [kg m2]
 };
@@ -32,6 +36,10 @@ struct ClumpState {
     Vector3<> angular_momentum;  ///< about the centre [kg m2/s]
 };
 ClumpState clump_state(const ParticleSet& grains, std::size_t i);
+
+/// A clump of this orientation that moves with `velocity` [m/s] and turns with `spin` [rad/s].
+ClumpState moving_clump(const ClumpBody& body, const Vector3<>& centre, const Quaternion& orientation,
+                        const Vector3<>& velocity, const Vector3<>& spin);
 
 /// Makes grain i a sphere of a new clump: all its fields but id and body.
 void place_new_sphere(ParticleSet& grains, std::size_t i, const ClumpBody& body, std::size_t sphere,
@@ -55,8 +63,15 @@ class ClumpMotion {
     /// Greatest distance of two spheres of a clump: so far must copies reach [m].
     double greatest_extent() const;
 
-    /// Brings the spheres of new clumps to places that PeriodicPlaces allows.
-    void start(ParticleSet& grains, const PeriodicPlaces& places) const;
+    /// Whether a grain stands for all of its clump where clumps are counted; those that are spheres of their
+    /// own do.
+    bool counts(std::uint8_t body, std::uint64_t id) const {
+        const ClumpBody* clump = of_body(body);
+        return !clump || clump->sphere(id) == 0;
+    }
+
+    /// Brings the spheres of new clumps, stored from `first` on, to places that PeriodicPlaces allows.
+    void start(ParticleSet& grains, const PeriodicPlaces& places, std::size_t first = 0) const;
     void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) const;
     /// Velocities of the end of the step, as GrainRows::predict().
     void predict(ParticleSet& grains, double time_step, GrainRows& rows) const;
@@ -66,6 +81,8 @@ class ClumpMotion {
     /// After the order of grains has changed: finds the spheres of the clumps. Returns the id of a grain of
     /// which one is neither own nor a copy, or `everybody`.
     std::uint64_t find_spheres(const ParticleSet& grains);
+    /// The same among own grains alone, which is enough for drift().
+    void find_own_spheres(const ParticleSet& grains) { list_spheres(grains); }
     static constexpr std::uint64_t everybody = ~std::uint64_t{0};
 
     /// What the copies need: force and torque on each own sphere.
@@ -73,7 +90,7 @@ class ClumpMotion {
                      std::span<const double> units) const;
     /// The part of the velocities that finish_step() leaves out; returns what it returns.
     double finish_step(ParticleSet& grains, const Responses& responses, const Vector3<>& gravity,
-                       double kick_step, double time_step) const;
+                       double kick_step, double time_step, double remaining) const;
 
     /// Of the clump of own grain i [J].
     double rotational_energy(const ParticleSet& grains, std::size_t i) const;
@@ -88,6 +105,7 @@ class ClumpMotion {
         std::uint32_t some;   ///< an own one, as stored
         std::uint32_t begin;  ///< of all in spheres_, in order
     };
+    std::uint64_t list_spheres(const ParticleSet& grains);
     template <class Visit>
     void for_each_sphere(const ParticleSet& grains, Visit&& visit) const;
     template <class Visit>
@@ -97,7 +115,7 @@ class ClumpMotion {
     std::vector<std::uint8_t> held_;
     bool exists_ = false;
     std::vector<Spheres> clumps_;
-    std::vector<std::uint32_t> spheres_;  ///< as stored, own or copies
+    std::vector<std::uint32_t> spheres_;  ///< as stored, own or copies; `absent` if neither
 };
 
 }  // namespace talus::dem

@@ -1,8 +1,15 @@
 #include "physics/dem/clumps/rotation.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace talus::dem {
+
+Quaternion evenly_spread_rotation(const std::array<double, 3>& numbers) {
+    const double u = numbers[0], a = 2 * std::numbers::pi * numbers[1], b = 2 * std::numbers::pi * numbers[2];
+    const double inner = std::sqrt(1 - u), outer = std::sqrt(u);
+    return {outer * std::cos(b), {inner * std::sin(a), inner * std::cos(a), outer * std::sin(b)}};
+}
 
 Vector3<> angular_velocity(const Vector3<>& angular_momentum, const Vector3<>& inertia,
                            const RotationMatrix& axes) {

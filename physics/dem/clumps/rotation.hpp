@@ -30,6 +30,10 @@ struct RotationMatrix {
     Vector3<> turned_back(const Vector3<>& v) const { return v.x * rows[0] + v.y * rows[1] + v.z * rows[2]; }
 };
 
+/// A rotation as likely as any other, from three numbers evenly spread over (0, 1): K. Shoemake, in: D. Kirk
+/// (ed.), Graphics Gems III (1992) 124.
+Quaternion evenly_spread_rotation(const std::array<double, 3>& numbers);
+
 /// Angular velocity [rad/s] of a body with this angular momentum, both in space; `inertia`: its principal
 /// moments [kg m2], `axes` turns its principal axes into place.
 Vector3<> angular_velocity(const Vector3<>& angular_momentum, const Vector3<>& inertia,

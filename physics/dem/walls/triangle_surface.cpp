@@ -212,8 +212,7 @@ void TriangleSurface::near(const Vector3<>& centre, double reach, std::vector<st
         }
     });
     std::ranges::sort(found);
-    const auto repeated = std::ranges::unique(found);
-    found.erase(repeated.begin(), repeated.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 /// C. Ericson, Real-Time Collision Detection (2005), sec. 5.1.5.
