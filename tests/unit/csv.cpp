@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/own_folder.hpp"
+
 namespace talus {
 namespace {
 
@@ -18,11 +20,9 @@ std::string content(const std::filesystem::path& file) {
 
 class Csv : public ::testing::Test {
   protected:
-    Csv() { std::filesystem::create_directories(folder); }
-    ~Csv() override { std::filesystem::remove_all(folder); }
     const Communicator comm{MPI_COMM_SELF};
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "talus_test_csv";
-    const std::filesystem::path file = folder / "energies.csv";
+    const test::OwnFolder folder;
+    const std::filesystem::path file = folder.path / "energies.csv";
     const std::vector<CsvColumn> columns{{"time", "s"}, {"kinetic_energy", "J"}, {"count", "1"}};
 };
 

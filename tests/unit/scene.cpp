@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "io/spelling.hpp"
+#include "tests/support/own_folder.hpp"
 
 namespace talus {
 namespace {
@@ -133,14 +133,12 @@ TEST(Scene, MissingFileIsNamed) {
 }
 
 TEST(Scene, FolderMeansItsSceneFile) {
-    const auto folder = std::filesystem::temp_directory_path() / "talus_test_scene";
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / "scene.toml") << "a = 3\n";
-    const Scene scene = Scene::read(folder);
+    const test::OwnFolder folder;
+    std::ofstream(folder.path / "scene.toml") << "a = 3\n";
+    const Scene scene = Scene::read(folder.path);
     EXPECT_EQ(scene.root().integer("a"), 3);
-    EXPECT_EQ(scene.file(), folder / "scene.toml");
+    EXPECT_EQ(scene.file(), folder.path / "scene.toml");
     EXPECT_EQ(scene.text(), "a = 3\n");
-    std::filesystem::remove_all(folder);
 }
 
 const std::string with_quick = R"([run]

@@ -1,14 +1,12 @@
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "domain/grain_fields.hpp"
 #include "src/setup/grain_scene.hpp"
+#include "tests/support/own_folder.hpp"
 
 /// Scenes of grains as a user writes them: what they give, and what is said about wrong ones.
 namespace talus::test {
@@ -138,11 +136,27 @@ TEST(SetupGrains, RefusesWhatDoesNotGoTogether) {
     expect(bond + "[output]\ncontacts = true\n", "output.contacts");
     expect("[[wall]]\nname = \"floor\"\nmaterial = \"glass\"\npoint = [0, 0, 1]\nnormal = [0, 0, -1]\n",
            "there is another of the name 'floor'");
-    std::string clumps = replaced("radius = 0.001", "clump = \"one\"");
-    clumps += "[clumps.one]\nx = [0]\ny = [0]\nz = [0]\nradii = [0.001]\n" + source_text;
-    EXPECT_NE(fault_of(clumps).find("source = an array of tables (does not go with clumps)"),
-              std::string::npos)
-        << fault_of(clumps);
+}
+
+TEST(SetupGrains, SourcesInsertClumps) {
+    const std::string table =
+        "[clumps.pair]\nx = [\"-1 mm\", \"1 mm\"]\ny = [0, 0]\nz = [0, 0]\nradii = [0.002, 0.001]\n";
+    const auto with = [&](const std::string& keys) {
+        std::string text = source_text;
+        return scene_text + text.replace(text.find("radii = [0.002, 0.003]"), 22, keys) + table;
+    };
+    const GrainScene scene = read(with("clump = \"pair\""));
+    const GrainSource& source = scene.simulation.flow.sources.at(0);
+    EXPECT_EQ(source.greatest_radius(), 0.002);
+    EXPECT_TRUE(source.turned);
+    EXPECT_EQ(scene.simulation.clumps.at(source.body).shape, source.clump);
+    EXPECT_EQ(scene.simulation.clumps.at(0).shape, nullptr);
+    EXPECT_FALSE(read(with("clump = \"pair\"\norientation = \"aligned\"")).bodies.at(1).turned);
+    EXPECT_NE(fault_of(with("clump = \"trio\"")).find("source[0].clump"), std::string::npos);
+    EXPECT_NE(fault_of(with("clump = \"pair\"\nradius = 0.001")).find("source[0].radius"), std::string::npos);
+    std::string shrinks = with("clump = \"pair\"");
+    shrinks.replace(shrinks.find("[dem]"), 5, "[dem]\noverlaps = \"shrink\"");
+    EXPECT_NE(fault_of(shrinks).find("dem.overlaps"), std::string::npos) << fault_of(shrinks);
 }
 
 // Eight places, two spheres at each: 1 mm apart, of 1 mm radius.
@@ -277,12 +291,6 @@ std::string tetrahedron(int faces) {
 
 class MeshWalls : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = std::filesystem::temp_directory_path() / fmt::format("talus_mesh_walls_{}", getpid());
-        std::filesystem::create_directories(folder_);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     /// The scene in an open box, with this wall in place of the plane.
     GrainScene read_with(const std::string& wall) const {
         std::string text = scene_text;
@@ -292,10 +300,10 @@ class MeshWalls : public testing::Test {
         put("\"periodic\", \"periodic\", \"open\"", "\"open\", \"open\", \"open\"");
         put("point = [0, 0, 0]\nnormal = [0, 0, 2]", wall);
         const Communicator comm(MPI_COMM_SELF);
-        return read_grain_scene(comm, Scene::parse(text, folder_ / "s.toml"));
+        return read_grain_scene(comm, Scene::parse(text, folder_.path / "s.toml"));
     }
     void write(const std::string& name, const std::string& content) const {
-        std::ofstream(folder_ / name) << content;
+        std::ofstream(folder_.path / name) << content;
     }
     std::string fault_with(const std::string& wall) const {
         try {
@@ -306,7 +314,7 @@ class MeshWalls : public testing::Test {
         return "no fault";
     }
 
-    std::filesystem::path folder_;
+    OwnFolder folder_;
 };
 
 TEST_F(MeshWalls, AreReadInTheirUnitWithWarnings) {

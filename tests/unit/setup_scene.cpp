@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <numbers>
 
 #include "src/run/warnings.hpp"
 #include "src/setup/scene_setup.hpp"
+#include "tests/support/own_folder.hpp"
 #include "tests/support/surfaces.hpp"
 
 /// Scenes as a user writes them: what bodies and impacts they give, and what is said about wrong ones.
@@ -41,16 +41,15 @@ mass = "1e17 kg"
 
 class SceneFiles : public testing::Test {
   protected:
-    void SetUp() override { std::filesystem::create_directories(folder_); }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
-    void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
+    void write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_.path / name) << text;
+    }
     /// The scene of `text` and the materials that it names.
     SceneSetup read(const std::string& text) {
         std::string whole = text + run;
         if (text.find("\"rock\"") != std::string::npos) whole += rock;
         if (text.find("\"ice\"") != std::string::npos) whole += ice;
-        return read_scene(comm_, Scene::parse(whole, folder_ / "s.toml"));
+        return read_scene(comm_, Scene::parse(whole, folder_.path / "s.toml"));
     }
     std::string fault_of(const std::string& text) {
         try {
@@ -68,7 +67,7 @@ class SceneFiles : public testing::Test {
     }
 
     Communicator comm_{MPI_COMM_SELF};
-    std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "talus_setup_scene";
+    OwnFolder folder_;
 };
 
 TEST_F(SceneFiles, ImpactorFollowsTheTargetWithEqualMasses) {

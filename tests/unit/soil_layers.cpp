@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "comm/communicator.hpp"
+#include "tests/support/own_folder.hpp"
 #include "tests/support/soil_run.hpp"
 
 namespace talus::test {
@@ -47,13 +48,13 @@ end_time = 8
 // What is left of the motion is 2.5e-9 after 4 s, and the square of it after the 8 s here.
 TEST(SoilLayers, BaseBearsTheWeightOfBoth) {
     const Communicator comm(MPI_COMM_SELF);
-    const std::filesystem::path file = std::filesystem::temp_directory_path() / "talus_soil_layers.toml";
+    const OwnFolder folder;
+    const std::filesystem::path file = folder.path / "layers.toml";
     std::ofstream(file) << layers;
     const SoilScene scene = soil_scene(comm, file, {});
     double force = 0;
     run_soil(comm, scene, [&](const SoilSimulation& run) { force = run.totals().forces[0][0]; });
     EXPECT_NEAR(std::abs(force), 3e5, 1e-10 * 3e5);
-    std::filesystem::remove(file);
 }
 
 }  // namespace
