@@ -7,6 +7,10 @@
 #ifdef __AVX2__
 #include <immintrin.h>
 #endif
+#if defined(__clang__) && defined(__AVX512VL__) && defined(__GLIBCXX__)
+#error \
+    "libstdc++'s simd chooses all lanes alike with clang and AVX-512 (_S_blend_avx512 of version 12): -DTALUS_ARCH=x86-64-v3"
+#endif
 
 namespace talus {
 

@@ -120,8 +120,8 @@ std::vector<int> deal_slabs(std::span<const Block> blocks, int ranks) {
     for (const Block& block : blocks) total += block.work;
     std::vector<int> owners(blocks.size());
     for (const std::size_t k : order) {
-        const double middle = (before + blocks[k].work / 2) / total;
-        owners[k] = std::clamp(static_cast<int>(middle * ranks), 0, ranks - 1);
+        const double middle = total > 0 ? (before + blocks[k].work / 2) / total : 0;
+        owners[k] = std::min(static_cast<int>(middle * ranks), ranks - 1);
         before += blocks[k].work;
     }
     return owners;

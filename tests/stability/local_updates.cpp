@@ -4,11 +4,13 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "physics/coupling/exchange.hpp"
 #include "physics/depth/basal_friction.hpp"
 #include "physics/gravity/tree.hpp"
 #include "physics/soil/hencky.hpp"
+#include "physics/solid/fracture.hpp"
 #include "physics/solid/stress_update.hpp"
 #include "tests/support/shared_cases.hpp"
 #include "tests/support/solid_materials.hpp"
@@ -36,6 +38,18 @@ void print_both(StabilityRow row, const std::string& plain, double plain_found, 
     print(row);
 }
 
+/// Fluid at rest around a grain, whose volume is `crowding` for each mass of it [m3/kg].
+coupling::Gathered fluid_at_rest(double density, double crowding) {
+    return {.velocity = {},
+            .vorticity = {},
+            .force_density = {},
+            .acceleration = {},
+            .reaction = {},
+            .solid_fraction = 0,
+            .density = density,
+            .crowding = crowding};
+}
+
 /// Slip of a grain and of the fluid around it after one exchange by Stokes' drag, over that before.
 double slip_left(double rate_times_step, double mass_ratio) {
     constexpr double radius = 1e-4, viscosity = 1e-3, fluid_density = 1000, speed = 1e-6;
@@ -43,14 +57,7 @@ double slip_left(double rate_times_step, double mass_ratio) {
                  fluid_mass = fluid_density * volume, mass = fluid_mass / mass_ratio,
                  drag = 6 * std::numbers::pi * viscosity * radius,
                  step = rate_times_step / (drag * (1 / mass + 1 / fluid_mass));
-    const coupling::Gathered around{.velocity = {},
-                                    .vorticity = {},
-                                    .force_density = {},
-                                    .acceleration = {},
-                                    .reaction = {},
-                                    .solid_fraction = 0,
-                                    .density = fluid_density,
-                                    .crowding = volume / fluid_mass};
+    const coupling::Gathered around = fluid_at_rest(fluid_density, volume / fluid_mass);
     const coupling::MovingGrain grain{radius, mass, false, {speed, 0, 0}, {}, {}};
     const double force =
         mean_force({.drag = coupling::Stokes{}, .viscosity = viscosity}, grain, around, 1, step).x;
@@ -81,14 +88,7 @@ TEST(VirtualMass, AsAForceItGrowsForLightSpheres) {
         const double mass = 0.5 * fluid_mass / share, exact = force / (mass + 0.5 * fluid_mass);
         double lagged = 0;
         for (int step = 0; step < 40; ++step) lagged = (force - 0.5 * fluid_mass * lagged) / mass;
-        const coupling::Gathered around{.velocity = {},
-                                        .vorticity = {},
-                                        .force_density = {},
-                                        .acceleration = {},
-                                        .reaction = {},
-                                        .solid_fraction = 0,
-                                        .density = 1000,
-                                        .crowding = 0};
+        const coupling::Gathered around = fluid_at_rest(1000, 0);
         const coupling::MovingGrain grain{radius, mass, false, {}, {}, {force / mass, 0, 0}};
         const double of_fluid = mean_force({.virtual_mass = 0.5}, grain, around, 1, 1e-3).x,
                      found = std::abs((force + of_fluid) / mass / exact - 1),
@@ -167,6 +167,30 @@ TEST(ColdTension, TheSquareOfTheSoundSpeedTurnsNegative) {
         print_both({"cold tension", {}, "density over that at rest", share * low, low, "c2 rho0/A", 0, true},
                    "Tillotson", state.sound_speed_squared / bulk, state.sound_speed_squared > 0,
                    "with the floor", speed * speed / bulk);
+    }
+}
+
+// Cracks make D^(1/3) grow at a constant rate. From D = 0 a step of more than the time to break takes the
+// plain update beyond 1, and what is left of the stress, 1 - D of it, changes sign.
+TEST(Damage, AStepLongerThanTheTimeToBreakReversesTheStress) {
+    const CrackGrowth growth{.crack_speed = 2000, .young_modulus = 6e10, .crack_count_power = 1.0 / 3};
+    const Flaws flaws{.threshold = 1e-3f, .exponent = 3, .count = 8};
+    constexpr double strain = 5e-3, support = 2e-3;
+    const double rate = damage_rate(growth, flaws, strain, support).rate;
+    EXPECT_NEAR(rate, 2 * growth.crack_speed / support, 1e-9 * rate);  // all eight are open
+    std::vector<float> threshold(1, flaws.threshold), exponent(1, flaws.exponent);
+    std::vector<std::uint32_t> count(1, flaws.count);
+    const std::vector<double> pressure(1, -growth.young_modulus * strain), deviator(1), radius(1, support);
+    const std::vector<std::uint8_t> body(1);
+    const FractureState state{{threshold, exponent, count}, pressure, {1, {deviator.data()}}, radius, 1};
+    for (const double share : shares) {
+        std::vector<double> damage(1);
+        grow_damage(growth, state, share / rate, damage, body, 0);
+        const double plain = 1 - share * share * share;
+        EXPECT_EQ(plain > 0, share < 1);
+        EXPECT_NEAR(1 - damage[0], std::max(plain, 0.0), 1e-9);
+        print_both({"damage", {}, "dt/time to break", share, 1, "stress left", 0, true}, "plain", plain,
+                   plain > 0, "limited", 1 - damage[0]);
     }
 }
 
