@@ -23,7 +23,8 @@ def performance_of(out):
 
 def run_scene(program, folder, scene, settings=(), until=None):
     """Runs runs/`scene` with settings "key=value" on one rank. Returns a row: work (pairs, the same on any machine), particles,
-    steps, seconds of the steps, and `errors` {name of the reference: relative error}; a run that fails says so in `failed`."""
+    steps, seconds of the steps, `errors` {name of the reference: relative error} and `uncertainties` {name: the reference's own}; a run
+    that fails says so in `failed`."""
     out = Path(folder) / f"run_{len(list(Path(folder).iterdir()))}"
     line = ["run", RUNS / scene, "--out", out]
     for setting in settings:
@@ -34,7 +35,8 @@ def run_scene(program, folder, scene, settings=(), until=None):
     if done.returncode != 0:
         return {"failed": (done.stderr.strip().splitlines() or [f"code {done.returncode}"])[0]}
     performance = performance_of(out)
-    compared = run_record.compare(out, run_record.read_state(out)[0])
+    compared = [c for c in run_record.compare(out, run_record.read_state(out)[0]) if c.found is not None and c.value]
     return {"pairs": performance["pairs"], "particles": performance["particles"], "steps": performance["steps"],
             "seconds": performance["seconds"],
-            "errors": {c.name: abs(c.found / c.value - 1) for c in compared if c.found is not None and c.value}}
+            "errors": {c.name: abs(c.found / c.value - 1) for c in compared},
+            "uncertainties": {c.name: abs(c.uncertainty / c.value) for c in compared}}
