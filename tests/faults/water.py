@@ -152,6 +152,19 @@ material = "wood"
 """
 
 
+def twin(lower, upper):
+    """A second block of wood."""
+    return f"""[[body]]
+name = "twin"
+shape = "box"
+lower = {lower}
+upper = {upper}
+lattice = "cubic"
+wall = "no_slip"
+rigid = {{ material = "wood" }}
+"""
+
+
 class RigidBodies(Case):
     def check(self, old, new, *patterns, code=2):
         self.assertIn(old, RIGID)
@@ -162,15 +175,7 @@ class RigidBodies(Case):
         self.check("lower = [0.1, 0.3]", "lower = [0.1, -0.06]", r"body 'block' overlaps body 'floor'")
 
     def test_a_body_in_another(self):
-        self.check("[[wall]]", """[[body]]
-name = "twin"
-shape = "box"
-lower = [0.2, 0.3]
-upper = [0.4, 0.5]
-lattice = "cubic"
-wall = "no_slip"
-rigid = { density = 500 }
-[[wall]]""", r"body 'block' overlaps body 'twin'")
+        self.check("[[wall]]", twin("[0.2, 0.3]", "[0.4, 0.5]") + "[[wall]]", r"body 'block' overlaps body 'twin'")
 
     def test_a_body_in_a_surface(self):
         self.check("point = [0, 0]", "point = [0, 0.305]", r"rigid body 'block' overlaps 'wall\[0\]' at the start, by 0\.5")
@@ -196,16 +201,7 @@ rigid = { density = 500 }
     def test_a_restart_with_another_body(self):
         done = talus("run", self.scene(SCENE + RIGID), "--out", self.out, "--steps", 1)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        twin = """[[body]]
-name = "twin"
-shape = "box"
-lower = [0.1, 0.7]
-upper = [0.3, 0.9]
-lattice = "cubic"
-wall = "no_slip"
-rigid = { material = "wood" }
-"""
-        other = self.scene(SCENE + RIGID + twin)
+        other = self.scene(SCENE + RIGID + twin("[0.1, 0.7]", "[0.3, 0.9]"))
         self.assert_fails(talus("run", other, "--out", self.out, "--restart", "latest"), 3, r"block \(rigid body\).*twin \(rigid body\)")
 
     def test_reflecting_boundaries(self):
