@@ -7,7 +7,7 @@ import subprocess
 import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parent.parent.parent
-TITLE = "Rock of 100 km radius hit at 3 km/s, 45 degrees, 10 000 particles"
+TITLE = "Broken rock of 100 km radius and 1300 kg/m3 hit at 3 km/s, 45 degrees, 10 000 particles"
 PROGRAMS = ["talus"]
 RADII = (20, 27, 34, 40, 46, 52, 60)  # of the impactor [km]
 FIT_FROM = 0.95  # of the mass: remnants above it say little of the slope
