@@ -42,6 +42,8 @@ inline constexpr Field<std::uint32_t> conditions{
     state,        owner, "boundary conditions of the scene that hold at the node, a bit each"};
 inline constexpr Field<double> pore_pressure{"pore_pressure", "Pa", scalar,
                                              state,           halo, "pressure of the pore water, of nodes"};
+inline constexpr Field<double> earlier_pore_pressure{
+    "earlier_pore_pressure", "Pa", scalar, state, owner, "of nodes: pore pressure a step before"};
 inline constexpr Field<double> volume{
     "volume", "m3", scalar,
     state,    halo, "of nodes: share of the body's volume at the start; of elements: now"};
@@ -81,5 +83,10 @@ inline constexpr Field<double> fit_inverse{
 inline constexpr Field<double> pressure_guess{
     "pressure_guess", "Pa", scalar, work, halo, "of nodes: what the pressure's equation is applied to"};
 inline constexpr Field<double> pressure_flux{
-    "pressure_flux", "m s-1", vector, work, halo, "of elements: flux by the gradient of pressure_guess"};
+    "pressure_flux",
+    "m s-1",
+    vector,
+    work,
+    halo,
+    "of elements: flux by the gradient of pressure_guess; of nodes: velocity on faces"};
 }  // namespace talus::soil_field

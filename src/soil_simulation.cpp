@@ -48,7 +48,7 @@ void add_fields(ParticleSet& particles, const SoilSetup& setup) {
     }
     if (has_layers(setup)) particles.add(soil_field::volume);
     if (setup.moves) soil::add_moving_fields(particles, setup.stress_smoothing > 0);
-    if (setup.saturated) soil::add_pore_fields(particles);
+    if (setup.saturated) soil::add_pore_fields(particles, setup.free_tight_faces);
     if (any_cam_clay(setup)) particles.add(soil_field::preconsolidation);
 }
 
@@ -83,9 +83,7 @@ void SoilSimulation::arrange() {
     if (setup_.saturated) {
         free_axes_ = soil::list_free_axes(boundary_nodes_, setup_.conditions, stencils_, setup_.dimension,
                                           setup_.spacing);
-        const bool any =
-            std::any_of(free_axes_.begin(), free_axes_.end(), [](auto axes) { return axes != 0; });
-        any_free_face_ = comm_.all_max(any ? 1.0 : 0.0) > 0;
+        any_free_face_ = comm_.all_max(free_axes_.any_tight ? 1.0 : 0.0) > 0;
     }
     phases_.stop();
 }
@@ -107,6 +105,7 @@ void SoilSimulation::list_stencils() {
 void SoilSimulation::start() {
     arrange();
     if (setup_.saturated) soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_);
+    if (setup_.free_tight_faces) soil::remember_pore_pressures(particles_);
     soil::impose_velocities(particles_, boundary_nodes_, setup_.conditions, time_);
     if (setup_.dimension == 1 && !setup_.moves)
         soil::impose_end_stress(particles_, boundary_nodes_, setup_.conditions, time_);
@@ -186,10 +185,10 @@ void SoilSimulation::step_at_rest(const soil::StepSettings& settings) {
                });
     soil::gather_tractions(boundary_nodes_, setup_.conditions, time_ + 0.5 * time_step_, stencils_,
                            setup_.dimension, memory_.tractions);
-    if (pore_pressure_) advance_pore_pressure(settings.body_force);
     phases_.enter(Phase::gradients);
     soil::gather_face_gradients(particles_, stencils_.face_gradients, memory_);
     if (smooths()) soil::gather_unseen(particles_, stencils_.unseen, settings, memory_);
+    if (pore_pressure_) advance_pore_pressure(settings.body_force);
     overlapped(phases_, Phase::forces, decomposition_.halo(), particles_,
                {&soil_field::velocity, &soil_field::stress},
                [&](Cells which) { soil::advance_nodes(particles_, stencils_, which, settings, memory_); });
@@ -204,15 +203,18 @@ void SoilSimulation::step_at_rest(const soil::StepSettings& settings) {
 
 void SoilSimulation::advance_pore_pressure(const std::array<double, 3>& body_force) {
     phases_.enter(Phase::pressure);
+    const double yielding = setup_.free_tight_faces ? soil::FreeFaces::enough_yielding : 0;
     const soil::PorePressure::Settings settings{.time_step = time_step_,
                                                 .spacing = setup_.spacing,
                                                 .stabilisation = setup_.pressure_smoothing,
                                                 .tolerance = setup_.pressure_tolerance,
                                                 .materials = setup_.materials,
                                                 .faces = {.any = any_free_face_,
-                                                          .free_axes = free_axes_,
-                                                          .tractions = memory_.tractions,
-                                                          .body_force = body_force}};
+                                                          .free_axes = free_axes_.of_row,
+                                                          .memory = &memory_,
+                                                          .hourglass = setup_.hourglass,
+                                                          .body_force = body_force,
+                                                          .extra_yielding = yielding}};
     const std::vector<std::uint32_t> imposed =
         soil::impose_pore_pressures(particles_, boundary_nodes_, setup_.conditions, time_ + time_step_);
     Halo& halo = decomposition_.halo();

@@ -33,6 +33,7 @@ struct SoilSetup {
     std::vector<soil::BoundaryCondition> conditions;
     bool moves = false;             ///< large deformation: nodes and elements move
     bool saturated = false;         ///< pores hold water under pressure: the v-p_w model
+    bool free_tight_faces = false;  ///< in 2D or 3D: soil::FreeFaces
     double pressure_smoothing = 0;  ///< soil::PorePressure::Settings::stabilisation
     double pressure_tolerance = 0;  ///< soil::PorePressure::Settings::tolerance
     PartitionMethod partition = PartitionMethod::cheapest;
@@ -110,8 +111,8 @@ class SoilSimulation {
     std::unique_ptr<CellGrid> grid_;
     soil::Stencils stencils_;
     std::vector<soil::BoundaryNode> boundary_nodes_;
-    std::vector<std::uint8_t> free_axes_;  ///< of soil::list_free_axes()
-    bool any_free_face_ = false;           ///< on any rank
+    soil::FreeAxes free_axes_;
+    bool any_free_face_ = false;  ///< on any rank
     soil::StepMemory memory_;
     soil::MovingMemory moving_memory_;
     std::optional<soil::PorePressure> pore_pressure_;

@@ -99,25 +99,26 @@ OnFace on_face(const BoundaryNode& node, Face face, std::span<const BoundaryCond
 
 }  // namespace
 
-std::vector<std::uint8_t> list_free_axes(std::span<const BoundaryNode> nodes,
-                                         std::span<const BoundaryCondition> conditions,
-                                         const Stencils& stencils, int dimension, double spacing) {
+FreeAxes list_free_axes(std::span<const BoundaryNode> nodes, std::span<const BoundaryCondition> conditions,
+                        const Stencils& stencils, int dimension, double spacing) {
     constexpr double rounding = 1e-6;
     const auto axes = static_cast<std::size_t>(dimension);
-    std::vector<std::uint8_t> found(stencils.to_faces.targets.size(), 0);
+    FreeAxes found{std::vector<std::uint8_t>(stencils.to_faces.targets.size(), 0)};
     for (const BoundaryNode& node : nodes) {
         if (node.faces == 0) continue;
         unsigned free = 0;
+        bool drained = false;
         for (std::size_t a = 0; a < axes; ++a)
             if (std::abs(stencils.own_weights[node.face_row * axes + a]) * spacing > rounding)
                 free |= 1u << a;
         for (std::size_t c = 0; c < conditions.size(); ++c) {
             if (!(node.conditions >> c & 1)) continue;
-            if (conditions[c].kind == Kind::pore_pressure) free = 0;
+            drained = drained || conditions[c].kind == Kind::pore_pressure;
             for (std::size_t a = 0; a < axes; ++a)
                 if (conditions[c].held[a]) free &= ~(1u << a);
         }
-        found[node.face_row] = static_cast<std::uint8_t>(free);
+        found.of_row[node.face_row] = static_cast<std::uint8_t>(free);
+        found.any_tight = found.any_tight || (free != 0 && !drained);
     }
     return found;
 }

@@ -50,11 +50,15 @@ struct BoundaryNode {
 std::vector<BoundaryNode> list_boundary_nodes(const ParticleSet& particles, const Stencils& stencils,
                                               std::span<const BoundaryCondition> conditions, double spacing);
 
-/// Axes along which nodes on faces move as they will and the divergence there depends on it, bit a for axis
-/// a, in order of Stencils::to_faces; none where a pore pressure is imposed.
-std::vector<std::uint8_t> list_free_axes(std::span<const BoundaryNode> nodes,
-                                         std::span<const BoundaryCondition> conditions,
-                                         const Stencils& stencils, int dimension, double spacing);
+/// How nodes on faces may move, and whether that changes the water's volume.
+struct FreeAxes {
+    /// Of each row of Stencils::to_faces, bit a: the divergence there depends on the velocity along axis a,
+    /// and that is not imposed.
+    std::vector<std::uint8_t> of_row;
+    bool any_tight = false;  ///< some have no imposed pore pressure
+};
+FreeAxes list_free_axes(std::span<const BoundaryNode> nodes, std::span<const BoundaryCondition> conditions,
+                        const Stencils& stencils, int dimension, double spacing);
 
 /// Imposes velocities at `time` on nodes.
 void impose_velocities(ParticleSet& particles, std::span<const BoundaryNode> nodes,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "comm/exact_sum.hpp"
 #include "physics/soil/node_density.hpp"
@@ -56,11 +57,17 @@ void for_each_divergence(const StencilRows& rows, const std::array<const double*
 
 }  // namespace
 
-void add_pore_fields(ParticleSet& particles) {
+void add_pore_fields(ParticleSet& particles, bool with_free_faces) {
+    if (with_free_faces) particles.add(soil_field::earlier_pore_pressure);
     for (const FieldInfo* info :
          std::initializer_list<const FieldInfo*>{&soil_field::pore_pressure, &soil_field::volume,
                                                  &soil_field::pressure_guess, &soil_field::pressure_flux})
         particles.add(*info);
+}
+
+void remember_pore_pressures(ParticleSet& particles) {
+    const auto now = std::as_const(particles).own(soil_field::pore_pressure);
+    std::copy(now.begin(), now.end(), particles.data(soil_field::earlier_pore_pressure));
 }
 
 double PorePressure::dot(const Stencils& stencils, std::span<const double> a,
@@ -95,51 +102,6 @@ void add_unseen(const ParticleSet& particles, const StencilRows& rows, const Por
     }
 }
 
-/// What the velocity of nodes on free faces half a step ahead, by the pressure of the elements, adds to the
-/// divergence there.
-template <int D>
-void add_free_faces(const ParticleSet& particles, const Stencils& stencils,
-                    const PorePressure::Settings& settings, std::vector<double>& product) {
-    const double* guess = particles.data(soil_field::pressure_guess);
-    const double* volume = particles.data(soil_field::volume);
-    const NodeDensity density(particles, settings.materials);
-    const StencilRows& rows = stencils.to_faces;
-    for (std::uint32_t row = 0; row < rows.targets.size(); ++row) {
-        const std::uint32_t i = rows.targets[row];
-        const double* own = stencils.own_weights.data() + std::size_t{row} * D;
-        double gradient[D] = {}, found = 0;
-        const double* weight = rows.weights.data() + std::size_t{rows.first[row]} * D;
-        for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k, weight += D)
-            for (int a = 0; a < D; ++a) gradient[a] += weight[a] * guess[rows.partners[k]];
-        for (int a = 0; a < D; ++a)
-            if (settings.faces.free_axes[row] >> a & 1) found += own[a] * gradient[a];
-        product[i] -= volume[i] * 0.5 * settings.time_step / density[i] * found;
-    }
-}
-
-/// Velocity that a node on a face has half a step ahead but for the pore pressure.
-template <int D>
-std::array<double, D> face_velocity(const StateColumns<D>& columns, const Stencils& stencils,
-                                    std::uint32_t row, double density,
-                                    const PorePressure::Settings& settings) {
-    const StencilRows& rows = stencils.to_faces;
-    std::array<double, D> velocity;
-    for (int a = 0; a < D; ++a)
-        velocity[static_cast<std::size_t>(a)] = columns.velocity[a][rows.targets[row]];
-    if (!settings.faces.any || settings.faces.free_axes[row] == 0) return velocity;
-    FluxSums<D> sums;
-    const double* weight = rows.weights.data() + std::size_t{rows.first[row]} * D;
-    for (std::uint32_t k = rows.first[row]; k < rows.first[row + 1]; ++k, weight += D)
-        sums.add_stress(weight, columns.stress, rows.partners[k]);
-    for (std::size_t a = 0; a < D; ++a)
-        if (settings.faces.free_axes[row] >> a & 1)
-            velocity[a] +=
-                0.5 * settings.time_step *
-                ((sums.divergence[a] + settings.faces.tractions[std::size_t{row} * D + a]) / density +
-                 settings.faces.body_force[a]);
-    return velocity;
-}
-
 }  // namespace
 
 /// The matrix times the guess, of free nodes.
@@ -163,7 +125,16 @@ void PorePressure::apply(ParticleSet& particles, const Stencils& stencils, const
             });
             if (settings.stabilisation > 0) add_unseen<D>(particles, *rows, settings, product_);
         }
-        if (settings.faces.any) add_free_faces<D>(particles, stencils, settings, product_);
+        if (!settings.faces.any) return;
+        press_faces(particles, stencils, settings.faces, settings.materials, settings.time_step);
+        halo_.begin(particles, {&soil_field::pressure_flux});
+        halo_.finish();
+        const auto pressed = sph::components<D>(particles, soil_field::pressure_flux);
+        for (std::uint32_t row = 0; row < stencils.to_faces.targets.size(); ++row) {
+            const std::uint32_t i = stencils.to_faces.targets[row];
+            by_faces_[i] = is_free_[i] ? volume[i] * divergence_of_face<D>(pressed, stencils, row) : 0;
+            product_[i] -= (1 + settings.faces.extra_yielding) * by_faces_[i];
+        }
     });
     stencils.for_each_node([&](std::uint32_t i) {
         if (!is_free_[i]) product_[i] = 0;
@@ -172,6 +143,12 @@ void PorePressure::apply(ParticleSet& particles, const Stencils& stencils, const
 
 /// Diagonal of the matrix and the right-hand side.
 void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, const Settings& settings) {
+    const FreeFaces& faces = settings.faces;
+    if (faces.any) {
+        predict_face_velocities(particles, stencils, faces, settings.materials, settings.time_step);
+        halo_.begin(particles, {&soil_field::pressure_flux});
+        halo_.finish();
+    }
     const double* pressure = particles.data(soil_field::pore_pressure);
     const double* volume = particles.data(soil_field::volume);
     const std::uint8_t* body = particles.data(field::body);
@@ -180,9 +157,9 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
         const double element_volume = std::pow(settings.spacing, D);
         const double unseen =
             settings.stabilisation / (settings.spacing * settings.spacing) * (corners - 1 - D) / corners;
-        const StateColumns<D> columns(particles);
         const NodeDensity density(particles, settings.materials);
-        const auto velocity = sph::components<D>(particles, soil_field::velocity);
+        const auto velocity = sph::components<D>(particles, soil_field::velocity),
+                   ahead = sph::components<D>(particles, soil_field::pressure_flux);
         for (const StencilRows* rows : {&stencils.to_nodes, &stencils.to_faces})
             for_each_divergence<D>(
                 *rows, velocity, [&](std::uint32_t row, std::uint32_t i, double divergence) {
@@ -197,18 +174,17 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
                     }
                     if (rows == &stencils.to_faces) {
                         const double* own = stencils.own_weights.data() + std::size_t{row} * D;
-                        const std::array<double, D> face =
-                            face_velocity<D>(columns, stencils, row, density[i], settings);
+                        if (faces.any) divergence += divergence_of_face<D>(ahead, stencils, row);
                         for (std::size_t a = 0; a < D; ++a) {
-                            divergence += own[a] * face[a];
-                            if (settings.faces.any && (settings.faces.free_axes[row] >> a & 1))
-                                own_squares += own[a] * own[a];
+                            if (!faces.any) divergence += own[a] * velocity[a][i];
+                            if (faces.any && (faces.free_axes[row] >> a & 1)) own_squares += own[a] * own[a];
                         }
                     }
                     right_[i] = volume[i] * (storage * pressure[i] - divergence);
                     diagonal_[i] =
                         volume[i] * (storage + volume[i] / element_volume * squares + unseen * mobilities +
-                                     0.5 * settings.time_step / density[i] * own_squares / corners);
+                                     (1 + faces.extra_yielding) * 0.5 * settings.time_step / density[i] *
+                                         own_squares / corners);
                 });
     });
 }
@@ -216,17 +192,20 @@ void PorePressure::prepare(ParticleSet& particles, const Stencils& stencils, con
 void PorePressure::advance(ParticleSet& particles, const Stencils& stencils,
                            std::span<const std::uint32_t> imposed, const Settings& settings) {
     const std::size_t size = particles.size();
-    for (std::vector<double>* values : {&residual_, &conditioned_, &product_, &diagonal_, &right_})
+    for (std::vector<double>* values :
+         {&residual_, &conditioned_, &product_, &diagonal_, &right_, &by_faces_})
         values->assign(size, 0);
     is_free_.assign(size, 1);
     for (const std::uint32_t i : imposed) is_free_[i] = 0;
     prepare(particles, stencils, settings);
+    if (settings.faces.extra_yielding > 0) extrapolate(particles, stencils);
     double* pressure = particles.data(soil_field::pore_pressure);
     double* guess = particles.data(soil_field::pressure_guess);
     std::copy_n(pressure, size, guess);
     apply(particles, stencils, settings);
     guess = particles.data(soil_field::pressure_guess);
     stencils.for_each_node([&](std::uint32_t i) {
+        right_[i] -= settings.faces.extra_yielding * by_faces_[i];  // beyond the guess of the start alone
         residual_[i] = is_free_[i] ? right_[i] - product_[i] : 0;
         conditioned_[i] = residual_[i] / diagonal_[i];
         guess[i] = conditioned_[i];
@@ -239,6 +218,17 @@ void PorePressure::advance(ParticleSet& particles, const Stencils& stencils,
         stabilised_biconjugate_gradients(particles, stencils, settings, enough);
     else
         conjugate_gradients(particles, stencils, settings, enough);
+}
+
+/// The pressure as it goes on from the last two steps, where none is imposed: the guess to start from.
+void PorePressure::extrapolate(ParticleSet& particles, const Stencils& stencils) const {
+    double* pressure = particles.data(soil_field::pore_pressure);
+    double* earlier = particles.data(soil_field::earlier_pore_pressure);
+    stencils.for_each_node([&](std::uint32_t i) {
+        const double now = pressure[i];
+        if (is_free_[i]) pressure[i] = 2 * now - earlier[i];
+        earlier[i] = now;
+    });
 }
 
 void PorePressure::refuse_unless_converging(double rest, double enough, const Settings& settings) const {

@@ -7,6 +7,7 @@
 #include "comm/communicator.hpp"
 #include "comm/halo.hpp"
 #include "physics/soil/constitutive.hpp"
+#include "physics/soil/free_faces.hpp"
 #include "physics/soil/stencils.hpp"
 
 namespace talus::soil {
@@ -21,14 +22,6 @@ namespace talus::soil {
 /// SIAM J. Sci. Stat. Comput. 13 (1992) 631).
 class PorePressure {
   public:
-    /// Nodes on faces that nothing holds and where no pressure is imposed: their velocity too is taken half a
-    /// step ahead, with the new pressure. Explicit, the stiffness of the water would make them unstable.
-    struct FreeFaces {
-        bool any = false;                         ///< on any rank
-        std::span<const std::uint8_t> free_axes;  ///< of each row of Stencils::to_faces, bit a: along axis a
-        std::span<const double> tractions;        ///< of gather_tractions()
-        std::array<double, 3> body_force{};       ///< [m/s2]
-    };
     struct Settings {
         double time_step = 0;  ///< [s]
         double spacing = 0;    ///< [m]
@@ -59,18 +52,22 @@ class PorePressure {
                              double enough);
     void stabilised_biconjugate_gradients(ParticleSet& particles, const Stencils& stencils,
                                           const Settings& settings, double enough);
+    void extrapolate(ParticleSet& particles, const Stencils& stencils) const;
     void refuse_unless_converging(double rest, double enough, const Settings& settings) const;
     void prepare(ParticleSet& particles, const Stencils& stencils, const Settings& settings);
     double dot(const Stencils& stencils, std::span<const double> a, std::span<const double> b) const;
 
     const Communicator& comm_;
     Halo& halo_;
-    std::vector<double> residual_, conditioned_, product_, diagonal_, right_;
+    std::vector<double> residual_, conditioned_, product_, diagonal_, right_, by_faces_;
     std::vector<std::uint8_t> is_free_;
     int iterations_ = 0;
 };
 
-/// Fields that the coupled model needs besides.
-void add_pore_fields(ParticleSet& particles);
+/// Fields that the coupled model needs besides; in 2D and 3D free tight faces need one more.
+void add_pore_fields(ParticleSet& particles, bool with_free_faces);
+
+/// As if they had been the same a step before.
+void remember_pore_pressures(ParticleSet& particles);
 
 }  // namespace talus::soil

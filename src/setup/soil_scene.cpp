@@ -133,7 +133,25 @@ void read_soil_bodies(const Communicator& comm, const Scene& scene, SoilScene& s
 }
 
 bool holds_somewhere(const SoilScene& scene, std::size_t condition);
-void refuse_free_tight_faces(const Section& table, const SoilScene& scene);
+std::string find_free_tight_face(const SoilScene& scene);
+
+/// Where water cannot leave through a face that moves as it will, the step of the pore pressure is stable for
+/// shorter steps and nearest partners only (tools/soil_tight_faces).
+void read_courant(const Section& table, SoilScene& soil, bool is_faulty) {
+    constexpr double most = 0.7, widest = 0.55;
+    SoilSetup& setup = soil.simulation;
+    const bool asks = setup.saturated && setup.dimension > 1 && !is_faulty;
+    const std::string tight = asks ? find_free_tight_face(soil) : "";
+    const bool shorter = setup.moves || !tight.empty();
+    setup.courant = table.number("courant", "1", shorter ? 0.6 : 0.9, {0, 1, true});
+    setup.free_tight_faces = !tight.empty();
+    if (tight.empty()) return;
+    const auto refuse = [&](const char* key, double value, double allowed) {
+        if (value > allowed) table.error(key, fmt::format("{}; allowed there: up to {}", tight, allowed));
+    };
+    refuse("courant", setup.courant, most);
+    refuse("smoothing", soil.smoothing, widest);
+}
 
 }  // namespace
 
@@ -148,7 +166,6 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     setup.dimension = static_cast<int>(root.integer("dimension", 3, 1, 3));
     setup.spacing = table.number("spacing", "m", {}, positive);
     setup.moves = table.choice("deformation", {"small", "large"}, "small") == "large";
-    setup.courant = table.number("courant", "1", setup.moves ? 0.6 : 0.9, {0, 1, true});
     setup.damping = table.number("damping", "s-1", 0.0, not_negative);
     setup.hourglass = table.number("hourglass", "1",
                                    setup.dimension == 1 ? 0
@@ -189,7 +206,7 @@ SoilScene read_soil_scene(const Communicator& comm, const Scene& scene) {
     const std::vector<Section> boundaries = root.sections("boundary");
     for (std::size_t c = 0; c < boundaries.size() && !scene.faulty(); ++c)
         if (!holds_somewhere(soil, c)) boundaries[c].error("", "holds at no node of the soil");
-    if (setup.saturated && setup.dimension > 1 && !scene.faulty()) refuse_free_tight_faces(table, soil);
+    read_courant(table, soil, scene.faulty());
     scene.finish();
     return soil;
 }
@@ -232,9 +249,8 @@ bool holds_somewhere(const SoilScene& scene, std::size_t condition) {
     return found;
 }
 
-/// In more than one dimension the step of the pore pressure is not stable where water cannot leave through a
-/// face that moves as it will.
-void refuse_free_tight_faces(const Section& table, const SoilScene& scene) {
+/// Says where the soil's surface is neither drained nor held, if anywhere.
+std::string find_free_tight_face(const SoilScene& scene) {
     const std::vector<soil::BoundaryCondition>& conditions = scene.simulation.conditions;
     std::string found;
     for_each_node(scene.lattice, [&](const SoilLattice::Node& node) {
@@ -247,16 +263,13 @@ void refuse_free_tight_faces(const Section& table, const SoilScene& scene) {
                        holds(scene, c, node);
             if (good) continue;
             const Point at = scene.lattice.corner(node.index);
-            found = fmt::format(
-                "the face {} at ({}) m has neither a velocity along {} nor a pore pressure: "
-                "it needs a [[boundary]] of kind 'drained', or one that holds it ('fixed', "
-                "'free_slip', 'velocity')",
-                face_names[static_cast<std::size_t>(face)],
-                fmt::join(at.begin(), at.begin() + scene.lattice.dimension, ", "),
-                "xyz"[soil::axis_of(face)]);
+            found = fmt::format("the face {} at ({}) m has neither a velocity along {} nor a pore pressure",
+                                face_names[static_cast<std::size_t>(face)],
+                                fmt::join(at.begin(), at.begin() + scene.lattice.dimension, ", "),
+                                "xyz"[soil::axis_of(face)]);
         }
     });
-    if (!found.empty()) table.error("saturated", found);
+    return found;
 }
 
 /// Place of a node, moved at random within the soil.

@@ -141,6 +141,11 @@ SoilScene scene_of(const char* text, const std::vector<std::string>& overrides =
 }
 SoilScene small_strain() { return scene_of(layers); }
 SoilScene with_water() { return scene_of(saturated); }
+/// Its surface lets no water through.
+SoilScene sealed() {
+    return scene_of(
+        saturated, {"boundary[4].kind=traction", "boundary[4].traction=[0,-1e3]", "boundary[4].lower=[3,4]"});
+}
 SoilScene moving_2d() { return scene_of(layers, {"soil.deformation=large"}); }
 SoilScene moving_3d() { return scene_of(cube); }
 
@@ -226,11 +231,11 @@ TEST_P(SoilSameBits, AfterInterruption) {
 }
 
 std::string name_of(const testing::TestParamInfo<SoilScene (*)()>& scene) {
-    constexpr const char* names[] = {"Layers", "Saturated", "Moving2D", "Moving3D"};
+    constexpr const char* names[] = {"Layers", "Saturated", "Moving2D", "Moving3D", "Sealed"};
     return names[scene.index];
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, SoilSameBits,
-                         testing::Values(small_strain, with_water, moving_2d, moving_3d), name_of);
+                         testing::Values(small_strain, with_water, moving_2d, moving_3d, sealed), name_of);
 
 }  // namespace
 }  // namespace talus::test
