@@ -27,4 +27,12 @@ inline constexpr Field<double> relative_velocity{"relative_velocity",
 inline constexpr Field<double> exchange{
     "exchange", "kg m-4", scalar, work, halo, "momentum that drag moves from phase to phase in a step"};
 
+inline constexpr Field<double> released_water{
+    "released_water",
+    "m2",
+    scalar,
+    work,
+    halo,
+    "of columns of solid: water of the ground taken up, over the sum of water around"};
+
 }  // namespace talus::field

@@ -47,6 +47,7 @@ void DepthSimulation::add_fields(ParticleSet& particles, const DepthSetup& setup
     if (settings.two_phase)
         add({&field::is_water, &field::other_height, &field::other_cover, &field::lateral_gravity,
              &field::relative_velocity, &field::exchange});
+    if (settings.two_phase && settings.entrainment > 0) add({&field::released_water});
     const bool fitted = settings.form == depth::Form::bed_fitted;
     const bool level = setup.terrain->is_plane() && setup.terrain->slope(0, 0) == std::array<double, 2>{};
     const bool by_level = settings.gradient == depth::Gradient::level;
@@ -135,6 +136,7 @@ void DepthSimulation::step() {
     depth::kick(particles_, setup_.settings, setup_.friction, dt / 2);
     if (setup_.settings.balance) depth::fade_balance(particles_, dt);
     if (setup_.settings.two_phase) drag(dt);
+    if (setup_.settings.two_phase && setup_.settings.entrainment > 0) erode(dt);
     time_ += dt;
     ++step_;
     conclude_step();
@@ -204,6 +206,16 @@ void DepthSimulation::drag(double time) {
                {&field::relative_velocity, &field::exchange}, [&](Cells cells) {
                    depth::drag_pass(particles_, decomposition_.table(), cells, setup_.settings);
                });
+    phases_.enter(Phase::motion);
+}
+
+/// What solid takes up of the ground in a time, and water with it.
+void DepthSimulation::erode(double time) {
+    overlapped(phases_, Phase::forces, decomposition_.halo(), particles_, {&field::volume}, [&](Cells cells) {
+        depth::erosion_pass(particles_, decomposition_.table(), cells, setup_.settings, time);
+    });
+    overlapped(phases_, Phase::forces, decomposition_.halo(), particles_, {&field::released_water},
+               [&](Cells cells) { depth::release_pass(particles_, decomposition_.table(), cells); });
     phases_.enter(Phase::motion);
 }
 

@@ -114,6 +114,7 @@ class DepthSimulation {
     std::vector<double> loads() const;
     void consolidate(std::span<const double> loads_before, double time_step);
     void drag(double time);
+    void erode(double time);
     void copy_velocity();
     Decomposition::Ledger merge();
     void conclude_step();

@@ -14,10 +14,9 @@ namespace {
 
 using sph::components;
 
-constexpr auto as_copied = [](const sph::Neighbours&, auto&) {};
-
-/// Means over the columns of each phase around, all with the kernel of the column that asks: what is left of
-/// their difference is no error of the mean.
+/// Means over the columns of each phase around, all with the kernel of the column that asks, or that of the
+/// partner if it is wider: what is left of their difference is no error of the mean, and columns that stand
+/// closely find those of the other phase between which they stand.
 template <int D>
 class RelativeVelocityPass {
   public:
@@ -35,26 +34,29 @@ class RelativeVelocityPass {
         records_.copy(place_velocity, components<D>(particles, field::predicted_velocity));
         records_.copy(place_volume, components<1>(particles, field::volume));
         records_.copy(place_phase, components<1>(particles, field::is_water));
-        records_.fill_copies(as_copied);
+        records_.copy(place_inverse_s, components<1>(particles, field::smoothing_length));
+        records_.fill_copies(finish);
     }
 
     void visit(const CellEntry& cell, std::span<const Run> runs) {
         partners_.enter(cell, runs);
-        records_.enter(runs, as_copied);
+        records_.enter(runs, finish);
         for (std::uint32_t i = cell.begin; i < cell.end; ++i) {
-            partners_.find(i, Settings::support());
+            partners_.find_mutual(i, Settings::support());
             evaluate(i);
         }
     }
 
   private:
     static constexpr std::size_t place_velocity = D, place_volume = 2 * D, place_phase = 2 * D + 1,
-                                 record_size = 2 * D + 2;
+                                 place_inverse_s = 2 * D + 2, record_size = 2 * D + 3;
+    static constexpr auto finish = [](const sph::Neighbours&, auto& values) {
+        values[place_inverse_s] = 1 / values[place_inverse_s];
+    };
 
     [[gnu::flatten]] void evaluate(std::uint32_t i) {
         const auto own = sph::broadcast(records_[i]);
         const auto& mine = records_[i].values;
-        const Lanes inverse_s = 1 / smoothing_length_[i];
         const std::span<const std::uint32_t> partners = partners_.index();
         LaneSum own_height, other_height;
         std::array<LaneSum, D> own_flux{}, other_flux{};
@@ -62,6 +64,7 @@ class RelativeVelocityPass {
             const auto other = records_.gather(partners.data() + k);
             sph::Vector<Lanes, D> r;
             for (std::size_t d = 0; d < D; ++d) r[d] = own[d] - other[d];
+            const Lanes inverse_s = min(own[place_inverse_s], other[place_inverse_s]);
             const Lanes weight =
                 select(first_lanes(partners.size() - k),
                        other[place_volume] * kernel_.value(sph::dot(r, r), inverse_s), Lanes(0.0));

@@ -116,7 +116,8 @@ class HeightPass {
         double wanted = 1;
         for (int d = 0; d < D; ++d) wanted *= settings_.eta / s;
         const double change = D * (wanted - number) - sums.number_dilation;
-        const double step = change > 0 ? 1 - (number - wanted) / change : greatest_change;
+        // Far from the solution, among many more than are wanted, the slope has the other sign.
+        const double step = change > 0 ? 1 - (number - wanted) / change : least_change;
         const double found = s * std::clamp(step, least_change, greatest_change);
         const double most = settings_.largest_smoothing_length, next = found < most ? found : most;
         const double stretched = D * height + sums.height_dilation;

@@ -161,7 +161,7 @@ void predict(ParticleSet& particles, const Settings& settings, const BasalFricti
 }
 
 void drift(ParticleSet& particles, const Settings& settings, double time) {
-    if (settings.entrainment == 0)
+    if (settings.entrainment == 0 || settings.two_phase)
         sph::drift(particles, time);
     else if (particles.dimension() == 1)
         drift_and_take_up<1>(particles, settings, time);

@@ -40,7 +40,7 @@ void predict(ParticleSet& particles, const Settings& settings, const BasalFricti
 
 /// Positions: x += v time. With entrainment a particle takes up volume on its way s, V = V_0 exp(E_s s), and
 /// its momentum is shared by it: the way is then ln(1 + E_s v time)/E_s, without error for any time. O.
-/// Hungr, Can. Geotech. J. 32 (1995) 610.
+/// Hungr, Can. Geotech. J. 32 (1995) 610. Two phases take nothing up here (erosion_pass()).
 void drift(ParticleSet& particles, const Settings& settings, double time);
 
 /// Lets still_acceleration fade along the way, by the factor e in a smoothing length: it belongs to the

@@ -32,12 +32,22 @@ void pressure_pass(ParticleSet& particles, const CellTable& table, Cells which, 
                    sph::PassCount& count);
 
 /// The mean velocity of the water around a column less that of the solid, and what drag moves from one to the
-/// other in `time` [s]. Reads position, volume, is_water, predicted_velocity of partners.
+/// other in `time` [s]. Reads position, volume, smoothing_length, is_water, predicted_velocity of partners.
 void relative_velocity_pass(ParticleSet& particles, const CellTable& table, Cells which,
                             const Settings& settings, double time);
 /// Changes velocity by the drag between the phases; the sum of momenta stays. Reads position, volume,
 /// smoothing_length, is_water, relative_velocity, exchange of partners.
 void drag_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings);
+
+/// What solid takes up of the ground in `time` [s]: volumes and velocities of columns of solid, and
+/// released_water, which release_pass() gives to the columns of water around; the sum of momenta stays.
+/// Hungr's law for both phases: of the ground's volume E_s |v_s| h time goes with an area of solid. Where no
+/// water is around, ground that holds water stays. Reads position, volume, is_water of partners.
+void erosion_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
+                  double time);
+/// Volumes and velocities of columns of water. Reads position, smoothing_length, is_water, released_water of
+/// partners.
+void release_pass(ParticleSet& particles, const CellTable& table, Cells which);
 
 /// Adds gravity along the gradient of the free surface; for Gradient::level, whose pressure_factor is zero.
 /// Reads position, volume, smoothing_length, depth, surface_level of partners.

@@ -32,6 +32,8 @@ struct TwoPhase {
     double exponent = 3.65;  ///< m [1]
     double porosity = 0.4;   ///< of the solid where its grains touch [1]
     BasalFriction water_friction{};  ///< of the bed on the water
+    double bed_porosity = 0.4;       ///< of the ground that solid takes up [1]
+    double bed_saturation = 1;       ///< share of its pores that water fills; the rest is air [1]
 
     double density(bool is_water) const { return is_water ? water_density : solid_density; }
     /// The share of the solid that water bears by buoyancy: all if it fills the pores, in proportion to what

@@ -53,8 +53,6 @@ void refuse_with_two_phase(const Section& root, const depth::Settings& settings)
     };
     refuse(table, "gradient", settings.gradient == depth::Gradient::level);
     refuse(table, "internal_friction_angle", settings.earth_pressure.has_value());
-    refuse(table, "entrainment", settings.entrainment > 0);
-    refuse(table, "balance", settings.balance);
 }
 
 /// What is not known of columns that merge.
@@ -93,8 +91,7 @@ depth::Settings read_settings(const Section& root, int dimension, const DepthSet
     settings.merging_distance = table.number("merging_distance", "m", 0.0, not_negative);
     settings.entrainment = table.number("entrainment", "m-1", 0.0, not_negative);
     if (fitted) settings.curvature = table.flag("curvature", true);
-    if (!fitted && any_level(root))
-        settings.balance = table.flag("balance", !by_level && !settings.two_phase);
+    if (!fitted && any_level(root)) settings.balance = table.flag("balance", !by_level);
     settings.earth_pressure = read_earth_pressure(table, friction_coefficient(setup.friction));
     if (by_level) {
         settings.gradient = depth::Gradient::level;
@@ -129,6 +126,13 @@ void read_releases(const Communicator& comm, const Scene& scene, const SceneTerr
             table_of.push_back(&table);
         }
     }
+    if (scene.faulty()) return;
+    for (std::size_t k = 0; k < table_of.size(); ++k)
+        if (setup.simulation.settings.balance && setup.simulation.settings.two_phase &&
+            setup.releases[k].level && setup.releases[k].solid_fraction > 0)
+            table_of[k]->error("level",
+                               "is that of a lake at rest, which holds no solid; allowed: "
+                               "solid_fraction = 0, or depth.balance = false");
     if (scene.faulty()) return;
     const double merging = setup.simulation.settings.merging_distance;
     for (std::size_t k = 0; k < table_of.size(); ++k) {
@@ -196,8 +200,9 @@ void append_lake(const Communicator& comm, const DepthSetup& setup, const Releas
     still.pore_pressure.reset();
     ParticleSet all = empty_columns(still);
     const std::uint64_t end_id = first_id + columns.released.size();
-    append_share(comm, columns.released, {}, first_id, all);
-    append_share(comm, columns.beyond, {}, end_id, all);
+    const Phase water{1, release.solid_fraction == 0};
+    append_share(comm, columns.released, {}, first_id, all, water);
+    append_share(comm, columns.beyond, {}, end_id, all, water);
     DepthSimulation lake(comm, still, std::move(all));
     lake.start();
     const ParticleSet& found = lake.particles();
@@ -208,6 +213,7 @@ void append_lake(const Communicator& comm, const DepthSetup& setup, const Releas
         for (const Field<double>* copied : {&field::volume, &field::depth, &field::smoothing_length})
             particles.data(*copied)[i] = found.data(*copied)[k];
         particles.data(field::id)[i] = found.data(field::id)[k];
+        if (particles.has(field::is_water)) particles.data(field::is_water)[i] = 1;
         for (int a = 0; a < particles.dimension(); ++a) {
             particles.data(field::position, a)[i] = found.data(field::position, a)[k];
             particles.data(field::velocity, a)[i] = release.velocity[static_cast<std::size_t>(a)];
@@ -261,9 +267,12 @@ ParticleSet make_columns(const Communicator& comm, const DepthScene& scene) {
     for (const Release& release : scene.releases) {
         const ReleasedColumns columns =
             columns_of(release, *scene.simulation.terrain, scene.simulation.settings, scene.simulation.box);
-        if (scene.simulation.settings.balance && release.level)
+        if (scene.simulation.settings.balance && release.level) {
             append_lake(comm, scene.simulation, release, columns, first_id, particles);
-        else if (release.solid_fraction > 0)
+            first_id += columns.released.size();
+            continue;
+        }
+        if (release.solid_fraction > 0)
             append_share(comm, columns.released, release.velocity, first_id, particles,
                          {release.solid_fraction, false});
         if (release.solid_fraction > 0) first_id += columns.released.size();

@@ -96,6 +96,10 @@ std::optional<depth::TwoPhase> read_two_phase(const Section& root) {
         phases.exponent = table.number("exponent", "1", 3.65, not_negative);
     }
     phases.porosity = table.number("porosity", "1", 0.4, {0, 0.99, true});
+    if (root.section("depth").has("entrainment")) {
+        phases.bed_porosity = table.number("bed_porosity", "1", phases.porosity, {0, 0.99, true});
+        phases.bed_saturation = table.number("bed_saturation", "1", 1.0, {0, 1});
+    }
     phases.water_friction = read_basal_friction(root.section("water_friction"));
     return phases;
 }

@@ -95,6 +95,8 @@ DepthScene debris() {
     setup.settings.two_phase = depth::TwoPhase{.speed = 0.5};
     setup.pore_pressure = PorePressure{.law = {.coefficient = 0.1}, .points = 3, .ratio = 0.8};
     setup.settings.two_phase->water_friction = depth::Manning{.roughness = 0.05};
+    setup.settings.entrainment = 0.005;
+    setup.settings.two_phase->bed_saturation = 0.9;
     scene.releases = {cap(25, 3)};
     scene.releases.front().solid_fraction = 0.7;
     scene.releases.front().velocity = {8, 3, 0};

@@ -60,6 +60,22 @@ TEST(DepthLake, AtRestStaysAtRest) {
     }
 }
 
+// The same of clear water where there may be solid.
+TEST(DepthLake, OfTwoPhasesStaysAtRest) {
+    const Communicator alone(MPI_COMM_SELF);
+    for (const int dimension : {1, 2}) {
+        DepthScene scene = lake(dimension, dimension == 1 ? 0.25 : 1);
+        scene.simulation.settings.two_phase = depth::TwoPhase{};
+        scene.simulation.settings.eta = dimension == 1 ? 2.4 : 2;
+        scene.releases.front().solid_fraction = 0;
+        scene.output.end_time = 5;
+        const DepthResult flow = run_depth(alone, scene);
+        EXPECT_EQ(flow.greatest_speed, 0);
+        EXPECT_EQ(flow.last.centre, flow.first.centre);
+        EXPECT_EQ(flow.last.water_volume, flow.first.volume);
+    }
+}
+
 // Pushed, it swings, and what it swings with can only fall: the forces have a potential.
 TEST(DepthLake, PushedGainsNoEnergy) {
     const Communicator world(MPI_COMM_WORLD), alone(MPI_COMM_SELF);

@@ -320,5 +320,42 @@ TEST(DepthTwoPhase, KeepsItsMomentum) {
     EXPECT_GT(flow.greatest_speed, 1);
 }
 
+// Both slide without friction as one, at v = v_0 V_0/V, and take up ground that holds solid and water as they
+// do: V = V_0 exp(E s) of each. Of what is taken up solid and water are to each other as in the ground, to
+// rounding, whatever the flow is made of. Kernel sums over even columns give the height of both.
+TEST(DepthTwoPhase, TakesUpTheGroundAsHungrsLawSays) {
+    const Communicator comm(MPI_COMM_SELF);
+    constexpr double growth = 0.02, speed = 5, porosity = 0.45, saturation = 0.8;
+    for (const double bed : {0.4, porosity}) {
+        Layer layer;
+        layer.phases.speed = 0.1;
+        DepthScene scene = scene_of(layer);
+        depth::Settings& settings = scene.simulation.settings;
+        settings.entrainment = growth;
+        settings.two_phase->bed_porosity = bed;
+        settings.two_phase->bed_saturation = bed == porosity ? saturation : 1;
+        DepthSimulation flow = moving(comm, scene, [](bool, double) { return speed; });
+        const DepthTotals first = flow.totals();
+        double way = 0;
+        while (flow.time() < 10) {
+            const double step = flow.time_step(), before = mean_velocity(flow, false);
+            flow.step();
+            way += step * before;
+        }
+        const DepthTotals last = flow.totals();
+        const double water = last.water_volume - first.water_volume, all = last.volume - first.volume;
+        EXPECT_NEAR(last.momentum[0], first.momentum[0], 1e-12 * first.momentum[0]);
+        EXPECT_GT(all, 0.5 * first.volume);
+        if (bed == porosity) {
+            EXPECT_NEAR(water * (1 - porosity), (all - water) * porosity * saturation, 1e-12 * all);
+            continue;
+        }
+        fmt::print("two phases take up ground: volume {:.6f}, exact {:.6f} of the first\n",
+                   last.volume / first.volume, std::exp(growth * way));
+        EXPECT_NEAR(water * 0.6, (all - water) * 0.4, 1e-12 * all);
+        EXPECT_NEAR(last.volume / first.volume, std::exp(growth * way), 1e-5);
+    }
+}
+
 }  // namespace
 }  // namespace talus::test
