@@ -63,10 +63,10 @@ class Depth(Case):
         self.assert_fails(done, 2, r"depth\.internal_friction_angle = .*not available together with \[two_phase\]")
 
     def test_a_lake_at_rest_holds_no_solid(self):
-        scene = SCENE.replace("depth = 1", "level = -0.5\nsolid_fraction = 0.5").replace('"bed_fitted"', '"cartesian"')
+        scene = SCENE.replace("depth = 1", "level = 1\nsolid_fraction = 0.5").replace('"bed_fitted"', '"cartesian"')
         scene = scene.replace("[friction]", "[two_phase]\nsettling_velocity = 1\n[friction]")
         self.assert_fails(talus("run", self.scene(scene), "--out", self.out, ranks=0), 2,
-                          r"release\[0\]\.level = -0\.5 .*holds no solid; allowed: solid_fraction = 0")
+                          r"release\[0\]\.level = 1 .*holds no solid; allowed: solid_fraction = 0")
         done = talus("check", self.scene(scene), "--set", "depth.balance=false", ranks=0)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
