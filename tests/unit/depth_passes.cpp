@@ -58,6 +58,21 @@ TEST(DepthPasses, EvenColumnsAreAsDeepAsTheyAre) {
     }
 }
 
+// Newton's method finds it from far off, too: a column that was alone is caught in a crowd.
+TEST(DepthPasses, AColumnInACrowdFindsItsSmoothingLength) {
+    const Communicator alone(MPI_COMM_SELF);
+    for (const int dimension : {1, 2}) {
+        const DepthSetup setup = setup_on(Terrain(0, {0, 0}), dimension);
+        ParticleSet particles = lattice(setup, 9, 0.7);
+        const std::uint64_t middle = dimension == 1 ? 4 : 4 * 9 + 4;
+        particles.data(field::smoothing_length)[middle] = 60;
+        DepthSimulation run(alone, setup, std::move(particles));
+        run.start();
+        EXPECT_NEAR(run.particles().data(field::smoothing_length)[place_of(run.particles(), middle)],
+                    setup.settings.eta, 1e-13);
+    }
+}
+
 // A block on a plane falls with g sin along it, less friction, whatever the plane's direction: in plan, its
 // acceleration is that times the cosine. The depth along the normal is the height in plan times the cosine.
 TEST(DepthPasses, ALoneColumnSlidesAsABlock) {
