@@ -10,7 +10,6 @@ TOP = pathlib.Path(__file__).resolve().parent.parent.parent
 TITLE = "Broken rock of 100 km radius and 1300 kg/m3 hit at 3 km/s, 45 degrees, 10 000 particles"
 PROGRAMS = ["talus"]
 RADII = (20, 27, 34, 40, 46, 52, 60)  # of the impactor [km]
-FIT_FROM = 0.95  # of the mass: remnants above it say little of the slope
 
 
 def simulate(program, radius, folder):
@@ -34,17 +33,26 @@ def measure(build):
         return [row_of(radius, simulate(build / "talus", radius, folder)) for radius in RADII]
 
 
-def threshold(row):
-    """Q*_RD of M_lr / M = 1 - Q_R / (2 Q*_RD)."""
-    return row["energy"] / (2 * (1 - row["remnant"]))
+def threshold(rows):
+    """Q*_RD: the energy that leaves half of the mass in one piece, between the runs on both sides of it [J/kg]."""
+    for low, high in zip(rows, rows[1:]):
+        if low["remnant"] >= 0.5 > high["remnant"]:
+            share = (low["remnant"] - 0.5) / (low["remnant"] - high["remnant"])
+            return low["energy"] + share * (high["energy"] - low["energy"])
+    raise SystemExit("no run on either side of half of the mass")
+
+
+def scaling_law(ratio):
+    """Largest remnant for Q_R/Q*_RD: Z. M. Leinhardt, S. T. Stewart, Astrophys. J. 745 (2012) 79, eqs 5 and 44."""
+    return 1 - ratio / 2 if ratio < 1.8 else 0.1 * (ratio / 1.8) ** -1.5
 
 
 def draw(rows, plt):
     figure, axes = plt.subplots(figsize=(6.2, 4.2), layout="constrained")
-    slope = [threshold(row) for row in rows if row["remnant"] < FIT_FROM]
-    mean = sum(slope) / len(slope)
-    axes.plot([0, 2 * mean / 1000], [1, 0], color="#888888",
-              label=f"$1 - Q_R / 2Q^*_{{RD}}$, $Q^*_{{RD}}$ = {mean / 1000:.0f} kJ/kg")
+    half = threshold(rows)
+    energies = [k * rows[-1]["energy"] / 200 for k in range(201)]
+    axes.plot([energy / 1000 for energy in energies], [scaling_law(energy / half) for energy in energies], color="#888888",
+              label=f"scaling law of Leinhardt and Stewart, $Q^*_{{RD}}$ = {half / 1000:.0f} kJ/kg")
     axes.plot([row["energy"] / 1000 for row in rows], [row["remnant"] for row in rows], "o", color="#1f6fb2",
               label="friction of damaged rock")
     for row in rows:
