@@ -46,7 +46,6 @@ double ball(double radius) { return 4.0 / 3 * std::numbers::pi * radius * radius
 CoupledSetup CoupledSimulation::completed(CoupledSetup setup) {
     setup.water.box = dem::PeriodicPlaces(setup.water.box).aligned(setup.water.box);
     setup.water.holds_grains = true;
-    setup.water.settings.wall_core = 0.9 * setup.water.settings.spacing();  // docs/decisions/032
     setup.grains.fluid_cells = WaterSimulation::cells(setup.water);
     setup.grains.slip_memories = setup.coupling.laws.basset ? setup.coupling.laws.basset->size() : 0;
     return setup;

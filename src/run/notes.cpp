@@ -68,7 +68,7 @@ std::vector<std::string> core_warnings(const WaterSimulation& water) {
     if (gap.within == 0) return {};
     return {
         fmt::format("{} particles of water begin nearer to a wall's particles than {:.3g} m, the nearest "
-                    "at {:.3g} m: where grains are, walls push such water off, that with {:.3g} Pa; "
+                    "at {:.3g} m: walls with a core push such water off, that with {:.3g} Pa; "
                     "lattice = \"cubic\" without jitter leaves a spacing between them",
                     gap.within, core, gap.least,
                     water::core_hardness * settings.state.reference_density * settings.state.sound_speed *

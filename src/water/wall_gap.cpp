@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/dem/vectors.hpp"
+#include "domain/water_fields.hpp"
 
 namespace talus {
 
 WallGap find_wall_gap(const WaterSimulation& simulation, double searched) {
     const ParticleSet& particles = simulation.particles();
     const std::uint8_t* body = particles.data(field::body);
-    const auto& walls = simulation.setup().walls;
+    const float* volume =
+        particles.data(water_field::partner_volume);  // less than 0 of walls, copies included
     const auto coordinate = [&](std::uint32_t i, int axis) {
         return axis < particles.dimension() ? particles.data(field::position, axis)[i] : 0.0;
     };
@@ -23,7 +24,7 @@ WallGap find_wall_gap(const WaterSimulation& simulation, double searched) {
                 double nearest2 = searched * searched;
                 for (const Run& run : runs)
                     for (std::uint32_t b = run.begin; b < run.end; ++b) {
-                        if (walls.empty() || !walls[body[b]]) continue;
+                        if (!(volume[b] < 0)) continue;
                         double r2 = 0;
                         for (int axis = 0; axis < 3; ++axis) {
                             const double apart = coordinate(a, axis) - coordinate(b, axis);

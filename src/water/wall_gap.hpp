@@ -11,7 +11,7 @@ struct WallGap {
     std::uint64_t within;  ///< particles of water that are nearer to one than `searched`
 };
 
-/// As they are arranged; `searched`: at most as far as the kernel reaches [m]. Collective.
+/// As they were at the last evaluation; `searched`: at most as far as the kernel reaches [m]. Collective.
 WallGap find_wall_gap(const WaterSimulation& simulation, double searched);
 
 }  // namespace talus
