@@ -50,4 +50,15 @@ inline constexpr Field<double> fluid_acceleration{
     "fluid_acceleration", "m s-2", vector, state, owner, "force of the fluid on the grain over its mass"};
 inline constexpr Field<double> earlier_velocity{
     "earlier_velocity", "m s-1", vector, state, owner, "velocity when the force of the fluid was last found"};
+inline constexpr Field<double> earlier_slip{
+    "earlier_slip",
+    "m s-1",
+    vector,
+    state,
+    owner,
+    "velocity of the fluid around less that of the grain when the force of the fluid was last found"};
+inline constexpr Field<double> slip_memories{
+    "slip_memories", "m s-1",
+    profile,         state,
+    owner,           "past changes of the slip, forgotten at one rate after another: three components each"};
 }  // namespace talus::coupling_field

@@ -20,13 +20,17 @@ namespace {
 
 namespace of = coupling_field;
 
-ParticleSet immersed_set() {
+ParticleSet immersed_set(const GrainSetup& setup) {
     ParticleSet set("immersed", 3);
     for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
              &field::velocity, &field::angular_velocity, &field::acceleration, &field::radius, &field::mass,
              &field::body, &of::home_rank, &of::home_place, &of::kernel_sum, &of::wet_share,
              &of::exchanged_force})
         set.add(*info);
+    if (setup.slip_memories > 0) {
+        set.add(of::earlier_slip);
+        set.add(of::slip_memories, 3 * setup.slip_memories);
+    }
     return set;
 }
 
@@ -42,8 +46,8 @@ double ball(double radius) { return 4.0 / 3 * std::numbers::pi * radius * radius
 CoupledSetup CoupledSimulation::completed(CoupledSetup setup) {
     setup.water.box = dem::PeriodicPlaces(setup.water.box).aligned(setup.water.box);
     setup.water.holds_grains = true;
-    setup.water.settings.wall_core = 0.9 * setup.water.settings.spacing();  // docs/decisions/032
     setup.grains.fluid_cells = WaterSimulation::cells(setup.water);
+    setup.grains.slip_memories = setup.coupling.laws.basset ? setup.coupling.laws.basset->size() : 0;
     return setup;
 }
 
@@ -53,7 +57,7 @@ CoupledSimulation::CoupledSimulation(const Communicator& comm, CoupledSetup setu
       setup_(completed(std::move(setup))),
       water_(comm, setup_.water, with_fields(std::move(water), setup_.coupling.fraction)),
       grains_(comm, setup_.grains, std::move(grains)),
-      immersed_(immersed_set()),
+      immersed_(immersed_set(setup_.grains)),
       immersed_cells_(comm, setup_.water.partition),
       exchange_(comm) {
     water_.before_evaluation([this](double) { immerse(); });
@@ -174,6 +178,10 @@ void CoupledSimulation::fill_immersed() {
         copy(field::velocity, axis);
         copy(field::angular_velocity, axis);
     }
+    if (setup_.grains.slip_memories > 0) {
+        for (int axis = 0; axis < 3; ++axis) copy(of::earlier_slip, axis);
+        for (int k = 0; k < 3 * setup_.grains.slip_memories; ++k) copy(of::slip_memories, k);
+    }
     const dem::Vectors velocity(grains, field::velocity), earlier(grains, of::earlier_velocity),
         of_fluid(grains, of::fluid_acceleration), all(grains, field::acceleration);
     const dem::Vectors others(immersed_, field::acceleration);
@@ -250,6 +258,12 @@ void CoupledSimulation::exchange() {
     std::vector<coupling::Gathered> around(immersed_.size());
     pairs_ +=
         coupling::gather(mixture(), how.spreading, shared_fraction(), how.laws.needs_vorticity(), around);
+    coupling::HistoryKernel::Passage passage;
+    std::vector<dem::Vector3<>> remembered;
+    if (how.laws.basset) {
+        passage = how.laws.basset->between(last_step_, water_.time_step());
+        remembered = remembered_slips(around, passage);
+    }
     const dem::Vectors velocity(immersed_, field::velocity), spin(immersed_, field::angular_velocity),
         others(immersed_, field::acceleration), force(immersed_, of::exchanged_force);
     for (std::size_t i = 0; i < immersed_.size(); ++i) {
@@ -259,7 +273,8 @@ void CoupledSimulation::exchange() {
                                           .held = setup_.grains.held[immersed_.data(field::body)[i]] != 0,
                                           .velocity = velocity[i],
                                           .spin = spin[i],
-                                          .other_acceleration = others[i]};
+                                          .other_acceleration = others[i],
+                                          .remembered = how.laws.basset ? remembered[i] : dem::Vector3<>{}};
         const double wet = immersed_.data(of::wet_share)[i];
         force.put(i, coupling::mean_force(how.laws, grain, around[i], wet, water_.time_step()));
         if (how.laws.torque)
@@ -270,7 +285,30 @@ void CoupledSimulation::exchange() {
         pairs_ += coupling::spread_force(mixture(), how.spreading);
     }
     return_forces();
+    if (how.laws.basset) grains_.remember_slips(at_home(of::earlier_slip), passage);
     weigh_work();
+}
+
+/// What the immersed grains remember of their slips, as MovingGrain has it; the slips of now become
+/// earlier_slip. A grain that is dry has none.
+std::vector<dem::Vector3<>> CoupledSimulation::remembered_slips(
+    std::span<const coupling::Gathered> around, const coupling::HistoryKernel::Passage& passage) {
+    const dem::Vectors velocity(immersed_, field::velocity), earlier(immersed_, of::earlier_slip);
+    const double* wet = immersed_.data(of::wet_share);
+    std::vector<dem::Vector3<>> remembered(immersed_.size());
+    for (std::size_t i = 0; i < immersed_.size(); ++i) {
+        const dem::Vector3<> slip = wet[i] > 0 ? around[i].velocity - velocity[i] : dem::Vector3<>{};
+        remembered[i] = passage.recent * (slip - earlier[i]);
+        earlier.put(i, slip);
+    }
+    int component = 0;
+    for (const auto& [kept, taken, felt] : passage.memories)
+        for (const auto axis : {&dem::Vector3<>::x, &dem::Vector3<>::y, &dem::Vector3<>::z}) {
+            const double* memory = immersed_.data(of::slip_memories, component++);
+            for (std::size_t i = 0; i < immersed_.size(); ++i)
+                remembered[i].*axis += felt * (kept * memory[i]);
+        }
+    return remembered;
 }
 
 /// A field of the immersed grains, on the ranks that move them and in their order there.

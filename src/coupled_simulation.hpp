@@ -90,6 +90,8 @@ class CoupledSimulation {
     void fill_immersed();
     std::vector<dem::Vector3<>> at_home(const Field<double>& field);
     void return_forces();
+    std::vector<dem::Vector3<>> remembered_slips(std::span<const coupling::Gathered> around,
+                                                 const coupling::HistoryKernel::Passage& passage);
     void weigh_work();
     void refresh_water(std::initializer_list<const FieldInfo*> fields);
     void refresh_immersed(std::initializer_list<const FieldInfo*> fields);

@@ -47,4 +47,22 @@ void GrainSimulation::set_spins(std::span<const dem::Vector3<>> spins) {
         if (!setup_.held[body[i]]) spin.put(i, spins[i]);
 }
 
+void GrainSimulation::remember_slips(std::span<const dem::Vector3<>> slips,
+                                     const coupling::HistoryKernel::Passage& passage) {
+    namespace of = coupling_field;
+    const dem::Vectors earlier(grains_, of::earlier_slip);
+    std::vector<dem::Vector3<>> changes(slips.size());
+    for (std::size_t i = 0; i < slips.size(); ++i) {
+        changes[i] = slips[i] - earlier[i];
+        earlier.put(i, slips[i]);
+    }
+    int component = 0;
+    for (const auto& [kept, taken, felt] : passage.memories)
+        for (const auto axis : {&dem::Vector3<>::x, &dem::Vector3<>::y, &dem::Vector3<>::z}) {
+            double* memory = grains_.data(of::slip_memories, component++);
+            for (std::size_t i = 0; i < slips.size(); ++i)
+                memory[i] = kept * memory[i] + taken * changes[i].*axis;
+        }
+}
+
 }  // namespace talus

@@ -132,6 +132,10 @@ void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
         for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
                  &coupling_field::fluid_acceleration, &coupling_field::earlier_velocity})
             grains.add(*info);
+    if (setup.slip_memories > 0) {
+        grains.add(coupling_field::earlier_slip);
+        grains.add(coupling_field::slip_memories, 3 * setup.slip_memories);
+    }
 }
 
 std::vector<const FieldInfo*> GrainSimulation::history_fields(const GrainSetup& setup) {

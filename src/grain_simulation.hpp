@@ -15,6 +15,7 @@
 #include "domain/cell_grid.hpp"
 #include "domain/particles.hpp"
 #include "domain/partition.hpp"
+#include "physics/coupling/history.hpp"
 #include "physics/dem/bonds/bond_list.hpp"
 #include "physics/dem/clumps/clump_motion.hpp"
 #include "physics/dem/contact_list.hpp"
@@ -50,6 +51,7 @@ struct GrainSetup {
     /// Cells of a fluid that the grains are in: ranks own grains as they own these
     /// (GrainSimulation::follow()).
     std::optional<CellGrid> fluid_cells{};
+    int slip_memories = 0;  ///< of each grain, of how it has moved through the fluid
 };
 
 /// Totals over all grains, exact sums rounded once: the same bits on any number of ranks. In a sheared box
@@ -107,6 +109,11 @@ class GrainSimulation {
 
     /// Angular velocities of the own grains that are not held, in order [rad/s].
     void set_spins(std::span<const dem::Vector3<>> spins);
+
+    /// What the own grains' slips in the fluid, in order, have become [m/s], for the next time that this is
+    /// called.
+    void remember_slips(std::span<const dem::Vector3<>> slips,
+                        const coupling::HistoryKernel::Passage& passage);
 
     double time() const { return time_; }                  ///< [s]
     double time_step() const { return setup_.time_step; }  ///< [s]

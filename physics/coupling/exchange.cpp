@@ -45,6 +45,11 @@ dem::Vector3<> lasting_force(const ExchangeLaws& laws, const MovingGrain& grain,
     return force;
 }
 
+/// Basset's force for each integral of the slip's changes over the root of the time since [kg s^-1/2].
+double basset_coefficient(const Surroundings& around, double diameter) {
+    return 1.5 * diameter * diameter * std::sqrt(std::numbers::pi * around.density * around.viscosity);
+}
+
 }  // namespace
 
 double drag_of(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid, double wet_share) {
@@ -64,16 +69,33 @@ dem::Vector3<> mean_force(const ExchangeLaws& laws, const MovingGrain& grain, co
     const double of_fluid = laws.feedback ? fluid.crowding / volume : 0.0;
     const dem::Vector3<> others = of_grain * (grain.mass * grain.other_acceleration + lasting +
                                               carried * (fluid.acceleration + fluid.reaction));
-    dem::Vector3<> drag;  // impulse
+    const double of_both = of_grain + of_fluid;
     const dem::Vector3<> slip = fluid.velocity - grain.velocity;
-    const double rate = beta * (of_grain + of_fluid), z = rate * time_step;
-    if (z > 0) {
-        const dem::Vector3<> apart = others - (fluid.acceleration - of_fluid * lasting);
-        const double relaxed = -std::expm1(-z) / z;
-        drag = (beta * time_step) * (relaxed * slip + (lag_of_relaxation(z) * time_step) * apart);
+    dem::Vector3<> apart =
+        others - (fluid.acceleration - of_fluid * lasting);  // without drag, slows the slip
+    double slowed = 1;  // share of itself that the slip's rate of change keeps
+    dem::Vector3<> earlier;
+    double added = 0;
+    if (laws.basset) {
+        const double basset = wet_share * basset_coefficient(around, 2 * grain.radius);
+        earlier = basset * grain.remembered;
+        added = basset * HistoryKernel::added(time_step);
+        slowed = 1 / (1 + added * of_both);
+        apart = slowed * (apart + of_both * earlier);
     }
-    if (grain.held) return lasting + carried * (fluid.acceleration + fluid.reaction) + (1 / time_step) * drag;
-    const dem::Vector3<> gained = time_step * others + of_grain * drag;
+    dem::Vector3<> impulse;  // of drag and history
+    const double rate = slowed * beta * of_both, z = rate * time_step;
+    if (z > 0) {
+        const double relaxed = -std::expm1(-z) / z;
+        impulse = (beta * time_step) * (relaxed * slip + (lag_of_relaxation(z) * time_step) * apart);
+    }
+    if (laws.basset) {
+        const dem::Vector3<> change = -time_step * apart - (slowed * of_both) * impulse;
+        impulse += added * change + time_step * earlier;
+    }
+    if (grain.held)
+        return lasting + carried * (fluid.acceleration + fluid.reaction) + (1 / time_step) * impulse;
+    const dem::Vector3<> gained = time_step * others + of_grain * impulse;
     return (grain.mass / time_step) * gained - grain.mass * grain.other_acceleration;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
+#include <optional>
+
 #include "physics/coupling/drag.hpp"
+#include "physics/coupling/history.hpp"
 #include "physics/coupling/passes.hpp"
 
 namespace talus::coupling {
@@ -10,7 +13,8 @@ struct ExchangeLaws {
     PressureModel model = PressureModel::a;
     double viscosity = 0;  ///< of the fluid [Pa s]
     dem::Vector3<> gravity{};
-    double virtual_mass = 0;  ///< coefficient, 1/2 for a sphere; 0: none
+    double virtual_mass = 0;                   ///< coefficient, 1/2 for a sphere; 0: none
+    std::optional<HistoryKernel> basset = {};  ///< whether past changes of the slip act, and how long
     bool saffman = false, magnus = false;
     bool torque = false;                ///< whether the fluid slows the spin of grains
     bool feedback = true;               ///< whether the fluid feels the grains
@@ -25,6 +29,9 @@ struct MovingGrain {
     bool held;
     dem::Vector3<> velocity, spin;
     dem::Vector3<> other_acceleration;  ///< of gravity and contacts [m/s2]
+    /// Mean over the step to come of the past changes of the slip u - v, each over the root of the time since
+    /// [m/s^(3/2)].
+    dem::Vector3<> remembered{};
 };
 
 /// Mean force of the fluid on a grain over the time step to come [N]. All but the drag are taken to last; the
@@ -36,6 +43,10 @@ struct MovingGrain {
 /// solved exactly, A and a being the accelerations of grain and fluid by all other forces. With M = V/sum_a
 /// share_a (alpha_a/rhobar_a) any number of grains together take no more from the fluid than it has: kinetic
 /// energy never grows, whatever the time step (docs/decisions/023).
+///
+/// Basset's force, 3/2 d^2 (pi rho mu)^(1/2) integral of dw/dt' (t - t')^(-1/2) dt', takes the slip to change
+/// evenly within a step: the change to come then acts as a mass does, on that slip, and is part of what is
+/// solved (docs/decisions/034).
 dem::Vector3<> mean_force(const ExchangeLaws& laws, const MovingGrain& grain, const Gathered& fluid,
                           double wet_share, double time_step);
 

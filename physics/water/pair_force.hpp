@@ -89,7 +89,7 @@ class PairForce {
               2 * settings.viscosity /
               (settings.state.reference_density * settings.state.sound_speed * settings.radius()))),
           core_(static_cast<float>(settings.wall_core / settings.radius())),
-          hardness_(settings.wall_core > 0 ? hardness / core_ : 0) {}
+          hardness_(settings.wall_core > 0 ? static_cast<float>(core_hardness) / core_ : 0) {}
 
     /// grad W = -kernel() x^3 r/R^(D+2).
     static double kernel() { return 5 * sph::WendlandC2<D>::norm * std::pow(Settings::support(), D + 2); }
@@ -132,7 +132,6 @@ class PairForce {
     }
 
   private:
-    static constexpr float hardness = 4;
     float damping_, friction_, core_, hardness_;
 };
 

@@ -52,6 +52,9 @@ struct Tait {
 /// Share of the volume that grains leave to the water: at least a fifth, however many there are.
 inline double share_of_water(double solid_fraction) { return 1 - std::min(solid_fraction, 0.8); }
 
+/// Pressure in the middle of a wall's core, over rho0 c0^2 [1].
+inline constexpr double core_hardness = 4;
+
 /// What a scene says of its water, resolved.
 struct Settings {
     Tait state;

@@ -29,7 +29,9 @@ CoupledEvolution::CoupledEvolution(const Communicator& comm, const Scene& scene,
 
 std::vector<std::string> CoupledEvolution::warnings() const {
     std::vector<std::string> found = setup_.warnings;
-    for (const std::vector<std::string>& more : {water_warnings(setup_.water), setup_.grains.warnings})
+    for (const std::vector<std::string>& more :
+         {water_warnings(setup_.water, simulation_->water().time_step()), core_warnings_,
+          setup_.grains.warnings})
         found.insert(found.end(), more.begin(), more.end());
     return found;
 }
@@ -54,6 +56,7 @@ void CoupledEvolution::create(const std::function<void()>& check_stop) {
 
 void CoupledEvolution::start() {
     simulation_->start();
+    core_warnings_ = core_warnings(simulation_->water());
     const double least = setup_.coupling.laws.least_fluid_fraction;
     if (const CouplingTotals t = simulation_->totals(); t.least_fluid_fraction < least)
         scene_.root().error(

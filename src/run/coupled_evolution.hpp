@@ -60,6 +60,7 @@ class CoupledEvolution : public Evolution {
     WaterRecord record_;
     Watch speed_, overlap_{most_overlap_of_hard_grains};  ///< of what diagnostics saw
     std::optional<CoupledSimulation> simulation_;
+    std::vector<std::string> core_warnings_;    ///< of the first state
     std::optional<ParticleSet> read_contacts_;  ///< of the checkpoint, until resume()
 };
 

@@ -7,17 +7,17 @@
 
 #include "physics/water/sound_waves.hpp"
 #include "src/run/warnings.hpp"
+#include "src/water/wall_gap.hpp"
 
 namespace talus {
 
 namespace {
 
 /// Sound that the time step makes grow: physics/water/sound_waves.hpp, tests/stability/water.cpp.
-void warn_of_sound(const water::Settings& settings, int dimension, std::vector<std::string>& found) {
+void warn_of_sound(const water::Settings& settings, int dimension, double step,
+                   std::vector<std::string>& found) {
     constexpr double slow = 1e-4;  // a thousand steps then make a tenth more of it
-    const double step = std::min(settings.courant * settings.smoothing_length / settings.state.sound_speed,
-                                 settings.viscous_time_step()),
-                 growth = water::fastest_growing(settings, dimension, step).growth;
+    const double growth = water::fastest_growing(settings, dimension, step).growth;
     if (growth < 1 + slow) return;
     water::Settings diffusive = settings;
     diffusive.density_diffusion = 0.1;
@@ -36,11 +36,16 @@ void warn_of_sound(const water::Settings& settings, int dimension, std::vector<s
 
 }  // namespace
 
-std::vector<std::string> water_warnings(const WaterScene& scene) {
+std::vector<std::string> water_warnings(const WaterScene& scene, std::optional<double> time_step) {
     std::vector<std::string> found = scene.warnings;
     const water::Settings& settings = scene.simulation.settings;
     const int dimension = scene.simulation.box.dimension;
-    if (settings.artificial_viscosity == 0) warn_of_sound(settings, dimension, found);
+    if (settings.artificial_viscosity == 0)
+        warn_of_sound(settings, dimension,
+                      time_step.value_or(
+                          std::min(settings.courant * settings.smoothing_length / settings.state.sound_speed,
+                                   settings.viscous_time_step())),
+                      found);
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
         if (!scene.simulation.walls.empty() && scene.simulation.walls[b])
             warn_of_thin_wall(scene.bodies[b], settings.radius(), dimension, found);
@@ -53,6 +58,21 @@ std::vector<std::string> water_warnings(const WaterScene& scene) {
                             "xyz"[a]));
     }
     return found;
+}
+
+std::vector<std::string> core_warnings(const WaterSimulation& water) {
+    const water::Settings& settings = water.setup().settings;
+    const double core = settings.wall_core;
+    if (!(core > 0)) return {};
+    const WallGap gap = find_wall_gap(water, core);
+    if (gap.within == 0) return {};
+    return {
+        fmt::format("{} particles of water begin nearer to a wall's particles than {:.3g} m, the nearest "
+                    "at {:.3g} m: walls with a core push such water off, that with {:.3g} Pa; "
+                    "lattice = \"cubic\" without jitter leaves a spacing between them",
+                    gap.within, core, gap.least,
+                    water::core_hardness * settings.state.reference_density * settings.state.sound_speed *
+                        settings.state.sound_speed * (1 - gap.least / core))};
 }
 
 std::string speed_note(double time, double speed, double sound) {

@@ -1,16 +1,23 @@
 #pragma once
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "src/setup/water_scene.hpp"
+#include "src/water_simulation.hpp"
 
 /// What families of models that share water or grains tell of them.
 namespace talus {
 
 /// Before the first step: choices of a scene's water that are known to fail somewhere, each with its number
-/// and its remedy.
-std::vector<std::string> water_warnings(const WaterScene& scene);
+/// and its remedy. `time_step`: what is taken [s], that of sound and viscosity in water at rest if
+/// nothing is said.
+std::vector<std::string> water_warnings(const WaterScene& scene, std::optional<double> time_step = {});
+
+/// Of water that begins within the cores of walls (water::Settings::wall_core), or nothing. Of the first
+/// state. Collective.
+std::vector<std::string> core_warnings(const WaterSimulation& water);
 
 /// Tells once that a figure has grown beyond what a model bears.
 class Watch {

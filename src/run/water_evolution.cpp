@@ -67,6 +67,13 @@ void WaterEvolution::start() {
         scene_.finish();
     }
     simulation_->start();
+    core_warnings_ = core_warnings(*simulation_);
+}
+
+std::vector<std::string> WaterEvolution::warnings() const {
+    std::vector<std::string> found = water_warnings(setup_);
+    found.insert(found.end(), core_warnings_.begin(), core_warnings_.end());
+    return found;
 }
 
 void WaterEvolution::save(const WriteSets& write) {

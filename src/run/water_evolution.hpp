@@ -17,7 +17,7 @@ class WaterEvolution : public Evolution {
     const std::string& title() const override { return setup_.title; }
     const OutputPlan& output() const override { return setup_.output; }
     double end_time() const override { return end_time_; }
-    std::vector<std::string> warnings() const override { return water_warnings(setup_); }
+    std::vector<std::string> warnings() const override;
     void create(const std::function<void()>& check_stop) override;
     ReadCheckpoint read(const std::filesystem::path& what,
                         const std::filesystem::path& output_folder) override;
@@ -59,7 +59,8 @@ class WaterEvolution : public Evolution {
     double end_time_;  ///< [s]
     WaterRecord record_;
     std::optional<WaterSimulation> simulation_;
-    Watch speed_;  ///< of what diagnostics saw [m/s]
+    std::vector<std::string> core_warnings_;  ///< of the first state
+    Watch speed_;                             ///< of what diagnostics saw [m/s]
 };
 
 }  // namespace talus

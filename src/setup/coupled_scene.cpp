@@ -67,6 +67,13 @@ void read_coupling(const Section& root, CoupledScene& scene) {
     how.laws.model = table.choice("model", {"A", "B"}, "A") == "A" ? PressureModel::a : PressureModel::b;
     how.laws.viscosity = table.number("viscosity", "Pa s", water.settings.viscosity, {0});
     how.laws.virtual_mass = table.number("virtual_mass", "1", 0.0, {0, 5});
+    if (table.flag("basset", false)) {
+        const double shortest = scene.grains.simulation.time_step;
+        const double longest =
+            table.number("basset_memory", "s", std::max(scene.water.output.end_time, 2 * shortest),
+                         {2 * shortest, 1e12 * shortest});
+        how.laws.basset.emplace(shortest, longest);
+    }
     const std::string lift = table.choice("lift", {"none", "saffman_mei", "magnus", "both"}, "none");
     how.laws.saffman = lift == "saffman_mei" || lift == "both";
     how.laws.magnus = lift == "magnus" || lift == "both";
@@ -96,6 +103,8 @@ void read_coupling(const Section& root, CoupledScene& scene) {
                 "that is larger than what it is spread over has no place in mean equations; allowed: "
                 "grains at most half as large, or bodies of water particles of their own",
                 scene.greatest_diameter, how.spreading.radius));
+    if (how.laws.viscosity == 0 && how.laws.basset)
+        table.error("basset", "needs water.viscosity or coupling.viscosity above 0");
     if (how.laws.viscosity == 0 && std::holds_alternative<Stokes>(how.laws.drag))
         table.error("drag", "stokes needs water.viscosity or coupling.viscosity above 0");
 }
@@ -176,6 +185,7 @@ CoupledScene read_coupled_scene(const Communicator& comm, const Scene& scene) {
     const CoupledSetup completed = CoupledSimulation::completed(coupled.simulation());
     coupled.water.simulation = completed.water;
     coupled.grains.simulation.fluid_cells = completed.grains.fluid_cells;
+    coupled.grains.simulation.slip_memories = completed.grains.slip_memories;
     return coupled;
 }
 

@@ -69,6 +69,15 @@ void read_rheology(const Section& table, water::Settings& settings) {
     settings.rheology = flow;
 }
 
+/// Needs the spacing.
+void read_wall_core(const Section& root, const Section& table, int dimension, water::Settings& settings) {
+    constexpr double most = 0.95, usual = 0.9;  // water at rest is 1 away: docs/decisions/032
+    const double core = table.number("wall_core", "1", root.has("grains") ? usual : 0.0, {0, most});
+    if (core > 0 && (dimension < 3 || table.has("rheology")))
+        table.error("wall_core", "is of water of one viscosity in three dimensions; allowed: 0");
+    settings.wall_core = core * settings.spacing();
+}
+
 /// What follows from all bodies, of which `first` is the first of water.
 void complete_open_ends(std::uint8_t first, WaterScene& water) {
     OpenPlan& open = water.simulation.open;
@@ -226,6 +235,7 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     read_bodies(comm, scene, smoothing, water);
     setup.settings.smoothing_length = smoothing * water.spacing;
     setup.settings.radius_in_spacings = water::Settings::support() * smoothing;
+    read_wall_core(root, table, dimension, setup.settings);
     if (!scene.faulty()) read_rheology(table.section("rheology"), setup.settings);
     if (!scene.faulty()) refuse_thin_buffers(root, water);
     water.gauges = read_gauges(root, setup.box, water.warnings);

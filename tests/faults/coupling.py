@@ -53,6 +53,17 @@ class Coupling(Case):
         self.check({'"di_felice"': '"stokes"', "viscosity = 0.001": "viscosity = 0"},
                    r"coupling\.drag = .*stokes needs water\.viscosity")
 
+    def test_history_without_viscosity(self):
+        self.check({"[coupling]": "[coupling]\nbasset = true", "viscosity = 0.001": "viscosity = 0"},
+                   r"scene\.toml:28: coupling\.basset = true.*needs water\.viscosity")
+
+    def test_history_that_is_not_one(self):
+        self.check({"[coupling]": '[coupling]\nbasset = "yes"'}, r"scene\.toml:28: coupling\.basset = .*allowed: true")
+        for memory in ("0", "-1", "nan", '"1 m"'):
+            self.check({"[coupling]": f"[coupling]\nbasset = true\nbasset_memory = {memory}"},
+                       r"scene\.toml:29: coupling\.basset_memory = ")
+        self.check({"[coupling]": "[coupling]\nbasset_memory = 1"}, r"scene\.toml:28: coupling\.basset_memory")
+
     def test_grains_larger_than_what_they_are_spread_over(self):
         self.check({"[coupling]": "[coupling]\naveraging_length = 0.0009"},
                    r"coupling\.averaging_length = .*larger than the averaging length")
@@ -94,6 +105,33 @@ class Coupling(Case):
         self.assertRegex(done.stdout, r"note: .*averaged over 0\.0011 m.*averaging_length = 0\.00125 keeps below that")
         done = talus("check", self.scene(SCENE.replace("[coupling]", "[coupling]\naveraging_length = 0.00125")), ranks=0)
         self.assertNotRegex(done.stdout, "averaged over")
+
+    def test_a_check_warns_of_sound_in_the_steps_that_are_taken(self):
+        # Of 1.67 ms for the sound in this bed, 1.66 and 1 ms are taken, of 1.73 ms in water alone. Sound grows by some
+        # (omega dt)^4/4 a step: the logarithms of 4.3 and 1.2 differ by about 1.66^4 = 7.6 (physics/water/sound_waves.hpp).
+        scene = SCENE.replace("viscosity = 0.001", "viscosity = 1e-6\ndensity_diffusion = 0").replace("1e5", "1e3")
+        for step, growth in (("0.00083", "4.3"), ("0.001", "1.2")):
+            done = talus("check", self.scene(scene.replace("[dem]", f"[dem]\ntime_step = {step}")), ranks=0)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertIn(f"sound in still water grows {growth} times in a hundred steps", done.stdout)
+
+    def test_a_check_and_a_run_warn_of_water_within_cores_of_walls(self):
+        wall = '[[body]]\nname = "floor"\nwall = "no_slip"\nshape = "box"\nlower = [0, 0, -0.01]\n' \
+               'upper = [0.02, 0.02, 0]\nlattice = "cubic"\nspacing = 0.0025\n'
+        scene = SCENE.replace("[materials", wall + "[materials").replace('"periodic"]', '"open"]').replace(
+            "lower = [0, 0, 0]", "lower = [0, 0, -0.02]", 1).replace(
+            'shape = "domain"\nlattice', 'shape = "box"\nlower = [0, 0, 0]\nupper = [0.02, 0.02, 0.02]\nlattice').replace(
+            'shape = "domain"\nradius', 'shape = "box"\nlower = [0, 0, 0]\nupper = [0.02, 0.02, 0.02]\nradius')
+        note = r"note: \d+ particles of water begin nearer to a wall's particles than 0\.00225 m, the nearest at 0\.00"
+        for command, ranks in (("check", 0), ("run", 2)):
+            arguments = ("--out", self.out) if command == "run" else ()
+            done = talus(command, self.scene(scene), *arguments, ranks=ranks)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertNotRegex(done.stdout + done.stderr, "particles of water begin nearer")
+            close = self.scene(scene.replace('name = "water"', 'name = "water"\njitter = 0.3'))
+            done = talus(command, close, *arguments, ranks=ranks)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertRegex(done.stdout + done.stderr, note)
 
     def test_a_check_warns_of_water_that_drags_nothing(self):
         done = talus("check", self.scene(SCENE.replace("viscosity = 0.001", "viscosity = 0")), ranks=0)

@@ -103,6 +103,10 @@ class Water(Case):
         scene = self.scene(SCENE.replace("surface = 0.2\n", "velocity = [1e200, 0]\n"))
         self.assert_fails(talus("run", scene, "--out", self.out), 1, r"(of|at) particle \d+")
 
+    def test_cores_of_walls(self):
+        self.check("[water]", "[water]\nwall_core = 0.9", r"water\.wall_core = 0\.9 .*three dimensions; allowed: 0")
+        self.check("[water]", "[water]\nwall_core = 1.2", r"water\.wall_core = 1\.2")
+
     def test_notes(self):
         # a step grows sound 1.0152 times by itself (tests/stability/water.cpp), a hundred 4.5 times
         for damping, note in (("density_diffusion = 0", r"note: sound in still water grows 4\.5 times in a hundred steps"),

@@ -74,7 +74,7 @@ CoupledScene bath(const Communicator& comm, PartitionMethod method) {
         comm, std::filesystem::path(TALUS_SOURCE_DIR) / "runs" / "still_bed",
         {"body[0].upper=[0.024,0.024,0.018]", "body[0].surface=0.018", "grains[0].upper=[0.012,0.024,0.012]",
          "grains[0].held=false", "coupling.virtual_mass=0.5", "coupling.lift=both", "coupling.torque=true",
-         "run.rebalance_interval=2"});
+         "coupling.basset=true", "run.rebalance_interval=2"});
     scene.water.simulation.partition = method;
     return scene;
 }
