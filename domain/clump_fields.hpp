@@ -29,5 +29,15 @@ inline constexpr Field<double> sphere_force{
     "sphere_force", "N", vector, work, halo, "of all contacts of this sphere of a clump"};
 inline constexpr Field<double> sphere_torque{
     "sphere_torque", "N m", vector, work, halo, "of all contacts of this sphere about its own centre"};
+// Under self-gravity.
+inline constexpr Field<double> attracting_mass{
+    "attracting_mass",
+    "kg",
+    scalar,
+    state,
+    owner,
+    "by which a grain attracts and is attracted: of a sphere of a clump its share of the clump's mass"};
+inline constexpr Field<double> sphere_attraction{
+    "sphere_attraction", "m s-2", vector, work, halo, "acceleration of gravity at this sphere of a clump"};
 
 }  // namespace talus::field

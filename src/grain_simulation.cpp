@@ -101,7 +101,7 @@ GrainSimulation::GrainSimulation(const Communicator& comm, GrainSetup setup, Par
                  &field::half_step_velocity, &field::half_step_angular_velocity, &field::broken_bonds})
             grains_.add(*info);
     if (!setup_.fluid_cells || setup_.settling) decomposition_.divide(grains_, *grid_);
-    if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step);
+    if (setup_.self_gravity) gravity_.emplace(comm_, *setup_.self_gravity, setup_.time_step, clumps_);
 }
 
 /// Cells across the distance that is searched: where most grains are much smaller, wider ones would be too
@@ -128,6 +128,7 @@ void GrainSimulation::add_fields(ParticleSet& grains, const GrainSetup& setup) {
     add_fields(grains);
     if (!setup.clumps.empty()) dem::ClumpMotion::add_fields(grains);
     if (setup.self_gravity) GrainGravity::add_fields(grains);
+    if (setup.self_gravity && !setup.clumps.empty()) dem::ClumpMotion::add_gravity_fields(grains);
     if (setup.fluid_cells)
         for (const FieldInfo* info : std::initializer_list<const FieldInfo*>{
                  &coupling_field::fluid_acceleration, &coupling_field::earlier_velocity})
@@ -190,12 +191,12 @@ void GrainSimulation::step() {
     phases_.enter(Phase::motion);
     std::optional<std::vector<dem::ContactRecord>> kept_contacts = exchange_grains();
     hide_accelerations();
-    if (gravity_) gravity_->begin_step(grains_, responses_);
+    if (gravity_) gravity_->begin_step(grains_, responses_, decomposition_);
     if (shear_)
         shear_->drift(grains_, sums_, setup_.time_step, places_);
     else
         dem::drift(grains_, sums_, setup_.time_step, places_);
-    clumps_.drift(grains_, setup_.time_step, places_);
+    clumps_.drift(grains_, setup_.time_step, places_, shear());
     if (outdated_ || kept_contacts || (gravity_ && gravity_->ends_block()))
         arrange(kept_contacts ? std::move(*kept_contacts) : records_of_contacts(), time_ + setup_.time_step);
     ++step_;
@@ -270,8 +271,8 @@ void GrainSimulation::evaluate(double time_step) {
     };
     if (clumps_.exists() || shear_ || bonds_.in_use()) make_ready(grains_.size());
     if (ready == 0) rows_.predict(grains_, sums_, time_step, rows_halo_.sent_records());
-    clumps_.predict(grains_, time_step, rows_);
     if (shear_) shear_->place_velocities(grains_, rows_);
+    clumps_.predict(grains_, time_step, rows_, shear());
     if (bonds_.in_use()) {
         dem::keep_half_step(grains_);
         decomposition_.halo().begin(grains_,
@@ -294,6 +295,7 @@ void GrainSimulation::evaluate(double time_step) {
     refuse_overload(dem::evaluate_pairs(evaluation, setup_.laws, dem::Pairs::with_copies, pairs_), false);
     if (bonds_.in_use()) refuse_bond(bonds_.evaluate(evaluation, grains_));
     evaluated_ += pairs_.contact_count() + at_walls_.touches().size();
+    look_at_pressed_grains();
     if (!clumps_.exists()) return;
     clumps_.take_forces(grains_, sums_, units_);
     phases_.enter(Phase::halo);
@@ -308,15 +310,22 @@ void GrainSimulation::finish(double kick_step, const dem::Impulse& impulse) {
         for (int axis = 0; axis < 3; ++axis)
             given.steady[static_cast<std::size_t>(axis)] =
                 grains_.data(coupling_field::fluid_acceleration, axis);
-    double moved2 = std::max(dem::finish_step(grains_, sums_, responses_, setup_.gravity, given, kick_step,
-                                              setup_.time_step, remaining_motion(kick_step)),
-                             clumps_.finish_step(grains_, responses_, setup_.gravity, kick_step,
-                                                 setup_.time_step, remaining_motion(kick_step)));
+    const double of_spheres = dem::finish_step(grains_, sums_, responses_, setup_.gravity, given, kick_step,
+                                               setup_.time_step, remaining_motion(kick_step));
+    const dem::ClumpMotion::Path of_clumps =
+        clumps_.finish_step(grains_, responses_, setup_.gravity, given, kick_step, setup_.time_step,
+                            remaining_motion(kick_step), shear());
+    double moved2 = std::max(of_spheres, of_clumps.moved2);
     // Two grains, or a grain and a wall, may each come nearer by half the skin before a pair is missing in
     // the list.
     const double allowed = 0.499 * setup_.skin;
     if (!std::isfinite(moved2)) refuse_not_finite();
-    if (shear_) moved2 = shear_->moved2(grains_, sums_, responses_.start, 2 * largest_radius_ + listed_gap());
+    if (shear_) {
+        const double listed = 2 * largest_radius_ + listed_gap();
+        const double moved =
+            std::sqrt(shear_->moved2(grains_, sums_, responses_.start, listed)) + of_clumps.bent;
+        moved2 = moved * moved;
+    }
     const bool walls_moved =
         walls_move() && at_walls_.displacement(poses_at(time_ + setup_.time_step)) > allowed;
     std::array<double, 3> greatest{moved2, walls_moved || bonds_.broken() ? 1.0 : 0.0,
@@ -355,6 +364,7 @@ bool GrainSimulation::walls_move() const {
 void GrainSimulation::arrange(std::vector<dem::ContactRecord> records, double time) {
     phases_.enter(Phase::decompose);
     if (shear_) {
+        clumps_.bring_centres_back(grains_, *shear_);
         shear_->bring_back(grains_);
         grid_->displace_images(shear_->offset());
     }

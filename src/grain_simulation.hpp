@@ -21,6 +21,7 @@
 #include "physics/dem/contact_list.hpp"
 #include "physics/dem/contact_pass.hpp"
 #include "physics/dem/motion.hpp"
+#include "physics/dem/pressed_contacts.hpp"
 #include "physics/dem/shear.hpp"
 #include "physics/dem/wall_contacts.hpp"
 #include "src/flow/grain_flow.hpp"
@@ -33,7 +34,7 @@ namespace talus {
 /// Everything that defines a run of grains besides the grains: what a scene says, resolved.
 struct GrainSetup {
     Box box;                             ///< three-dimensional; open or periodic along each axis; a sheared
-                                         ///< one without walls, held grains and clumps
+                                         ///< one without walls and held grains
     dem::AnyLawTable laws;               ///< of all pairs of materials
     std::vector<std::uint8_t> material;  ///< of each body of grains, an index into `laws`
     std::vector<std::uint8_t> held;      ///< one a body: 1 if its grains never move
@@ -63,6 +64,9 @@ struct GrainTotals {
     std::array<double, 3> angular_momentum{};  ///< about the origin, spin included [kg m2/s]
     double greatest_speed = 0;
     double greatest_overlap = 0;  ///< over the smaller radius [1]
+    /// That grains pressed between others bore at the looks of this run so far, the least, and the overlap
+    /// of that one over its radius [s], [1].
+    double stable_step = 0, overlap_of_stable_step = 0;
     std::uint64_t grains = 0;     ///< a clump is one, as in the coordination
     std::uint64_t contacts = 0, wall_contacts = 0;
     std::uint64_t bonds = 0, broken_bonds = 0;
@@ -166,9 +170,11 @@ class GrainSimulation {
     void evaluate(double time_step);
     void finish(double kick_step, const dem::Impulse& impulse);
     void settle();
+    void look_at_pressed_grains();
     double remaining_motion(double time_step) const;
     std::vector<dem::WallPose> poses_at(double time) const;
     bool walls_move() const;
+    const dem::Shear* shear() const { return shear_ ? &*shear_ : nullptr; }
     void refuse_not_finite();
     void refuse_overload(const dem::Overload& overload, bool at_wall);
     void join_grains();
@@ -203,6 +209,7 @@ class GrainSimulation {
     bool outdated_ = false;
     double moved_ = 0;     ///< no grain of any rank has moved farther since the last list [m]
     int quiet_looks_ = 0;  ///< in a row, while grains settle
+    dem::HardestPressed hardest_pressed_;  ///< of this rank
     std::vector<std::string> notes_;
     std::string fault_;
     std::uint64_t evaluated_ = 0, lists_ = 0;

@@ -10,14 +10,24 @@ namespace talus {
 
 std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
     rows_.predict(grains_, sums_, 0, 0, grains_.size());
-    clumps_.predict(grains_, 0, rows_);
     if (shear_) shear_->place_velocities(grains_, rows_);
+    clumps_.predict(grains_, 0, rows_, shear());
     rows_halo_.begin(rows_.values());
     rows_halo_.finish(rows_.values());
     if (shear_) shear_->move_copies(rows_);
     std::vector<dem::LoadedContact> contacts = dem::loaded_pairs(rows_, setup_.laws, pairs_);
     at_walls_.append_loads(rows_, setup_.laws, setup_.walls, poses_at(time_), contacts);
     return contacts;
+}
+
+/// Steps are chosen for contacts as they are expected: some are pressed harder than that, which lasts longer
+/// than the steps between two looks.
+void GrainSimulation::look_at_pressed_grains() {
+    constexpr std::uint64_t interval = 100;
+    if (step_ % interval != 0) return;
+    const dem::HardestPressed now = dem::find_hardest_pressed(rows_, grains_.size(), setup_.laws, pairs_,
+                                                              setup_.walls, at_walls_.touches());
+    if (now.stable_step < hardest_pressed_.stable_step) hardest_pressed_ = now;
 }
 
 GrainTotals GrainSimulation::totals() const {
@@ -30,16 +40,19 @@ GrainTotals GrainSimulation::totals() const {
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
     // Contacts, at walls, grains that are not held, bonds, ends of broken ones, grains.
     std::array<std::uint64_t, 6> counts{};
+    const double* attracted =
+        attraction && clumps_.exists() ? grains_.data(field::attracting_mass) : m;
     for (std::size_t i = 0; i < grains_.size(); ++i) {
+        if (attraction) sums[potential].add(0.5 * attracted[i] * attraction[i]);
         if (!clumps_.counts(body[i], grains_.data(field::id)[i])) continue;
         ++counts[5];
         counts[2] += setup_.held[body[i]] ? 0 : 1;
         const dem::ClumpBody* clump = clumps_.of_body(body[i]);
         const Field<double>&centre = clump ? field::clump_centre : field::position,
               &velocity = clump ? field::clump_velocity : field::velocity;
-        double speed2 = 0, spin2 = 0, potential_per_mass = attraction ? 0.5 * attraction[i] : 0;
+        double speed2 = 0, spin2 = 0, potential_per_mass = 0;
         std::array<double, 3> x, p;
-        const double flow = dem::shear_flow(setup_.box, grains_.data(field::position, 1)[i]);
+        const double flow = dem::shear_flow(setup_.box, grains_.data(centre, 1)[i]);
         for (int axis = 0; axis < 3; ++axis) {
             const double v = grains_.data(velocity, axis)[i] - (axis == 0 ? flow : 0.0),
                          w = grains_.data(field::angular_velocity, axis)[i];
@@ -103,6 +116,7 @@ GrainTotals GrainSimulation::totals() const {
     ExactSum::all_reduce(comm_, sums);
     comm_.all_max(std::span<double>(greatest));
     comm_.all_sum(std::span<std::uint64_t>(counts));
+    const double stable_step = comm_.all_min(hardest_pressed_.stable_step);
     const auto mobile = static_cast<double>(std::max<std::uint64_t>(counts[2], 1));
     std::vector<std::array<double, 3>> wall_forces(setup_.walls.size()), wall_torques(setup_.walls.size());
     for (std::size_t w = 0; w < wall_forces.size(); ++w)
@@ -118,6 +132,9 @@ GrainTotals GrainSimulation::totals() const {
             .angular_momentum = {sums[lx].value(), sums[ly].value(), sums[lz].value()},
             .greatest_speed = greatest[0],
             .greatest_overlap = greatest[1],
+            .stable_step = stable_step,
+            .overlap_of_stable_step = comm_.all_max(
+                hardest_pressed_.stable_step == stable_step ? hardest_pressed_.overlap_share : 0.0),
             .grains = counts[5],
             .contacts = counts[0],
             .wall_contacts = counts[1],

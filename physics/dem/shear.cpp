@@ -60,7 +60,7 @@ void Shear::place_velocities(const ParticleSet& grains, GrainRows& rows) const {
     const double* y = grains.data(field::position, 1);
     double* v = rows.values().data() + GrainRows::velocity_at;
     for (std::size_t i = 0; i < grains.size(); ++i, v += GrainRows::width)
-        *v = ((*v + rounding_) - rounding_) + turns_of(y[i]) * velocity_;
+        *v = placed(*v, turns_of(y[i]));
 }
 
 void Shear::bring_back(ParticleSet& grains) const {

@@ -8,6 +8,7 @@
 #include "domain/particles.hpp"
 #include "physics/dem/grain_rows.hpp"
 #include "physics/dem/motion.hpp"
+#include "physics/dem/vector3.hpp"
 
 namespace talus::dem {
 
@@ -36,12 +37,25 @@ class Shear {
     double offset() const { return offset_; }
     /// Of the images across the upper side, along x [m/s].
     double velocity() const { return velocity_; }
+    /// In a step [m].
+    double advance() const { return advance_; }
+    /// Boxes along y that a place is above the box.
+    double turns_of(double y) const;
+    /// Velocity along x at the image that is so many boxes up, from one at that within the box, which is
+    /// rounded as contacts see it [m/s].
+    double placed(double velocity, double turns) const {
+        return ((velocity + rounding_) - rounding_) + turns * velocity_;
+    }
 
     /// In place of dem::drift(): positions advance by a step, velocities of grains that cross change.
     void drift(ParticleSet& grains, std::span<const ForceSum> rates, double time_step,
                const PeriodicPlaces& places);
     /// After rows.predict(): predicted velocities are those of the image that the position is of.
     void place_velocities(const ParticleSet& grains, GrainRows& rows) const;
+    /// Of the image that is so many boxes below.
+    Vector3<> brought_back(const Vector3<>& place, double turns) const {
+        return {place.x - turns * offset_, place.y - turns * length_y_, place.z};
+    }
     /// Positions along x and y are those of the image within the box along y.
     void bring_back(ParticleSet& grains) const;
 
@@ -57,8 +71,6 @@ class Shear {
                   const std::array<StaggeredVector<double>, 3>& start, double listed) const;
 
   private:
-    double turns_of(double y) const;
-
     double lower_, length_x_, length_y_, time_step_;
     double advance_;   ///< of the images across the upper side in a step [m]
     double velocity_;  ///< advance_ over the step, rounded to a multiple of the unit below [m/s]

@@ -103,7 +103,7 @@ void Gravity::evaluate_direct(ParticleSet& particles, std::span<double> work_of_
         for (std::size_t a = 0; a < 3; ++a)
             targets.position[a][i] = source.position[a] =
                 particles.data(field::position, static_cast<int>(a))[i];
-        source.mass = particles.data(field::mass)[i];
+        source.mass = particles.data(*settings_.mass_field)[i];
         targets.softening[i] = source.softening =
             settings_.softening_length > 0
                 ? settings_.softening_length

@@ -78,7 +78,7 @@ void OwnTree::sort(const ParticleSet& particles, const CellGrid& grid, std::span
     std::sort(cells.begin(), cells.end());
     const double* x[3];
     for (int a = 0; a < 3; ++a) x[a] = particles.data(field::position, a);
-    const double *mass = particles.data(field::mass),
+    const double *mass = particles.data(*settings.mass_field),
                  *own_softening = particles.data(*settings.softening_field);
     const double* g[3];
     for (int a = 0; a < 3; ++a) g[a] = particles.data(field::gravity_acceleration, a);

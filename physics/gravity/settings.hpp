@@ -29,6 +29,7 @@ struct Settings {
     /// A particle's own softening length is this field of it times this factor.
     const Field<double>* softening_field = &field::smoothing_length;
     double softening_factor = 1;
+    const Field<double>* mass_field = &field::mass;  ///< by which particles attract and are attracted [kg]
     double step_factor = 0.25;  ///< C in dt = C sqrt(h/|g|)
     Precision precision = Precision::single_precision;
     int leaf_size = 32;   ///< most particles in a leaf of the tree

@@ -49,7 +49,7 @@ void add_grains(const ParticleSet& grains, const Box& box, const dem::ClumpMotio
         std::array<double, 3> v{};
         for (int axis = 0; axis < 3; ++axis)
             v[static_cast<std::size_t>(axis)] = grains.data(velocity, axis)[i];
-        v[0] -= dem::shear_flow(box, grains.data(field::position, 1)[i]);  // no clumps in sheared boxes
+        v[0] -= dem::shear_flow(box, grains.data(clump ? field::clump_centre : field::position, 1)[i]);
         sums[mass].add(m[i]);
         sums[volume_of_grains].add(clump ? clump->shape->volume
                                          : 4.0 / 3.0 * std::numbers::pi * r[i] * r[i] * r[i]);

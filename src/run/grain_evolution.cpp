@@ -11,6 +11,7 @@
 #include "src/flow/contact_set.hpp"
 #include "src/run/flow_columns.hpp"
 #include "src/run/scene_checks.hpp"
+#include "src/setup/hard_impacts.hpp"
 #include "src/setup/wall_reader.hpp"
 
 namespace talus {
@@ -45,6 +46,7 @@ std::vector<std::string> GrainEvolution::warnings() const {
             "grains overlap at the start, by up to {:.3g} of the smaller radius: they will push each other "
             "apart",
             first_overlap_));
+    found.insert(found.end(), impact_warnings_.begin(), impact_warnings_.end());
     return found;
 }
 
@@ -65,6 +67,9 @@ void GrainEvolution::create(const std::function<void()>&) {
     simulation_->start();
     first_overlap_ = simulation_->totals().greatest_overlap;
     refuse_first_overlap(scene_, first_overlap_);
+    const ImpactFindings impacts = find_hard_impacts(comm_, setup_, simulation_->grains());
+    impact_warnings_ = impacts.warnings;
+    for (const std::string& fault : impacts.faults) scene_.root().section("dem").error("time_step", fault);
     const double stable = simulation_->stable_step_of_bonds();
     if (simulation_->time_step() > stable)
         scene_.root().section("dem").error(
@@ -82,6 +87,9 @@ std::vector<std::string> GrainEvolution::preparations() const {
 std::vector<std::string> GrainEvolution::news() {
     std::vector<std::string> found = simulation_->take_notes();
     if (overlap_.is_due()) found.push_back(overlap_note(time(), overlap_.greatest()));
+    if (step_share_.is_due())
+        found.push_back(
+            pressed_note(time(), simulation_->time_step() / step_share_.greatest(), overlap_of_stable_step_));
     return found;
 }
 
@@ -221,6 +229,8 @@ std::vector<CsvColumn> GrainEvolution::diagnostics_columns() const {
 Diagnostics GrainEvolution::diagnostics() {
     const GrainTotals t = simulation_->totals();
     overlap_.see(t.greatest_overlap);
+    step_share_.see(simulation_->time_step() / t.stable_step);
+    overlap_of_stable_step_ = t.overlap_of_stable_step;
     std::vector<double> row = {simulation_->time(),
                                t.mass,
                                t.kinetic_energy,

@@ -89,4 +89,12 @@ std::string overlap_note(double time, double overlap) {
         time, overlap, most_overlap_of_hard_grains);
 }
 
+std::string pressed_note(double time, double stable_step, double overlap) {
+    return fmt::format(
+        "time {:.4g} s: contacts of a grain pressed in by {:.2g} of its radius bear steps up to {:.3g} s; "
+        "beyond that grains that are squeezed shake, and take energy from what squeezes them or give it: "
+        "dem.time_step = {:.2g} s?",
+        time, overlap, stable_step, 0.8 * stable_step);
+}
+
 }  // namespace talus

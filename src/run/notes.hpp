@@ -45,4 +45,7 @@ std::string speed_note(double time, double speed, double sound);
 inline constexpr double most_overlap_of_hard_grains = 0.05;
 std::string overlap_note(double time, double overlap);
 
+/// `stable_step`: what a grain pressed in by `overlap` of its radius bears [s], [1].
+std::string pressed_note(double time, double stable_step, double overlap);
+
 }  // namespace talus

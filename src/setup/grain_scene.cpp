@@ -187,12 +187,16 @@ void refuse_with_clumps(const Section& root, const std::vector<GrainBody>& bodie
     const auto any = [&](auto&& is) { return std::ranges::any_of(bodies, is); };
     if (!any([](const GrainBody& body) { return body.clump != nullptr; })) return;
     constexpr std::string_view why = "is for single spheres, and the scene has clumps";
-    if (self_gravity) root.section("gravity").error("", why);
     if (shrinks) root.section("dem").error("overlaps", why);
     const std::vector<Section> tables = root.sections("grains");
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         if (bodies[b].handed) tables[b].error("file", why);
         if (norm(bodies[b].spin) > 0) tables[b].error("spin", why);
+        if (self_gravity && bodies[b].clump && std::ranges::min(bodies[b].clump->mass_shares) <= 0)
+            tables[b].error("clump",
+                            "has a sphere whose share of the mass would not be above 0 if all lay at the "
+                            "centres of the spheres, as [gravity] takes it; allowed: spheres that are not "
+                            "buried in others");
     }
 }
 
@@ -205,9 +209,9 @@ void read_shear(const Section& table, const std::vector<GrainBody>& bodies, bool
         table.error("shear_rate", "only a box that is periodic along all axes can be sheared");
     if (has_walls) table.error("shear_rate", "a sheared box holds no walls");
     for (const GrainBody& body : bodies)
-        if (body.held || body.clump)
-            table.error("shear_rate", fmt::format("a sheared box holds no {}, as '{}'",
-                                                  body.held ? "grains that are held" : "clumps", body.name));
+        if (body.held)
+            table.error("shear_rate",
+                        fmt::format("a sheared box holds no grains that are held, as '{}'", body.name));
 }
 
 }  // namespace
@@ -333,16 +337,16 @@ std::vector<Row> packed(const GrainBody& body, const RandomStream& random, std::
 
 /// Makes grain i, whose id is `id`, a sphere of the clump at a row's place.
 void make_sphere(ParticleSet& grains, std::size_t i, const dem::ClumpBody& clump, const GrainBody& body,
-                 const Row& row, std::uint64_t id, const RandomStream& random) {
+                 const Box& box, const Row& row, std::uint64_t id, const RandomStream& random) {
     const std::uint64_t sphere = clump.sphere(id);
     const double moves = body.held ? 0 : 1;
     dem::Quaternion orientation;
     if (body.turned)
         orientation = dem::evenly_spread_rotation(
             {random.uniform(id - sphere, 4), random.uniform(id - sphere, 5), random.uniform(id - sphere, 6)});
+    const dem::Vector3<> velocity{row[4] + dem::shear_flow(box, row[1]), row[5], row[6]};
     dem::place_new_sphere(grains, i, clump, sphere,
-                          dem::moving_clump(clump, {row[0], row[1], row[2]}, orientation,
-                                            moves * dem::Vector3<>{row[4], row[5], row[6]},
+                          dem::moving_clump(clump, {row[0], row[1], row[2]}, orientation, moves * velocity,
                                             moves * dem::Vector3<>{row[7], row[8], row[9]}));
 }
 
@@ -393,7 +397,7 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
             grains.data(field::id)[i] = id;
             grains.data(field::body)[i] = static_cast<std::uint8_t>(b);
             if (body.clump) {
-                make_sphere(grains, i, scene.simulation.clumps[b], body, row, id, random);
+                make_sphere(grains, i, scene.simulation.clumps[b], body, scene.simulation.box, row, id, random);
                 continue;
             }
             for (int axis = 0; axis < 3; ++axis) {

@@ -40,17 +40,39 @@ struct How {
     PartitionMethod partition = PartitionMethod::metis;
     int rebalance_interval = 10, interval = 4;
     gravity::Opening opening = gravity::Opening::geometric;
+    bool clumps = false;  ///< dumbbells in place of the spheres
 };
 
-GrainSimulation prepared(const Communicator& comm, const How& how, ParticleSet grains) {
+GrainSetup setup_of(const How& how) {
     GrainSetup setup = grain_setup({rock}, radius, 2);
+    if (how.clumps) {
+        const std::vector<dem::Vector3<>> ends{{-0.4 * radius, 0, 0}, {0.5 * radius, 0, 0}};
+        const std::vector<double> radii{0.6 * radius, 0.5 * radius};
+        setup.clumps = {
+            {std::make_shared<const dem::ClumpShape>(dem::clump_shape(ends, radii, 64)), 0, 2500}};
+    }
     setup.partition = how.partition;
     setup.rebalance_interval = how.rebalance_interval;
     setup.self_gravity = SelfGravity{{.opening = how.opening}, how.interval};
-    return {comm, setup, std::move(grains)};
+    return setup;
 }
 
-ParticleSet new_grains(const Communicator& comm) {
+GrainSimulation prepared(const Communicator& comm, const How& how, ParticleSet grains) {
+    return {comm, setup_of(how), std::move(grains)};
+}
+
+ParticleSet new_grains(const Communicator& comm, const How& how) {
+    if (how.clumps) {
+        std::vector<dem::ClumpState> states;
+        for (const GrainState& grain : cloud()) {
+            const double half = norm(grain.position);
+            states.push_back({0.9 * grain.position,
+                              grain.velocity,
+                              {std::cos(half), {0, 0.8 * std::sin(half), 0.6 * std::sin(half)}},
+                              {}});
+        }
+        return clump_set(comm, setup_of(how), states);
+    }
     ParticleSet grains = grain_set(comm, cloud());
     GrainGravity::add_fields(grains);
     return grains;
@@ -62,7 +84,7 @@ std::uint64_t hash_of(const Communicator& comm, GrainSimulation& run) {
 }
 
 std::uint64_t hash_after(const Communicator& comm, const How& how) {
-    GrainSimulation run = prepared(comm, how, new_grains(comm));
+    GrainSimulation run = prepared(comm, how, new_grains(comm, how));
     run.start();
     for (int k = 0; k < steps; ++k) run.step();
     EXPECT_GT(run.totals().contacts, 100U);
@@ -78,12 +100,20 @@ TEST(GrainGravitySameBits, WhoeverOwnsWhat) {
             EXPECT_EQ(hash_after(world, {partition, 3, 4, opening}), expected)
                 << "method " << static_cast<int>(partition);
     }
+    const std::uint64_t expected = hash_after(alone, {.clumps = true});
+    for (const PartitionMethod partition : {PartitionMethod::metis, PartitionMethod::scrambled})
+        EXPECT_EQ(hash_after(world, {.partition = partition, .rebalance_interval = 3, .clumps = true}),
+                  expected)
+            << "clumps, method " << static_cast<int>(partition);
 }
 
-TEST(GrainGravitySameBits, AfterInterruption) {
+class GrainGravityStopped : public testing::TestWithParam<bool> {};
+
+TEST_P(GrainGravityStopped, GoesOnWithTheSameBits) {
     const Communicator world(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
-    const std::uint64_t expected = hash_after(alone, {});
-    GrainSimulation first = prepared(world, {}, new_grains(world));
+    const How how{.clumps = GetParam()};
+    const std::uint64_t expected = hash_after(alone, how);
+    GrainSimulation first = prepared(world, how, new_grains(world, how));
     first.start();
     for (int k = 0; k < 44; ++k) first.step();
     const ParticleSet contacts = first.save();
@@ -98,7 +128,8 @@ TEST(GrainGravitySameBits, AfterInterruption) {
     ParticleSet empty("grains", 3);
     GrainSimulation::add_fields(empty, first.setup());
     GrainSimulation second =
-        prepared(world, {PartitionMethod::bisection, 5}, share(std::move(empty), first.grains()));
+        prepared(world, {.partition = PartitionMethod::bisection, .rebalance_interval = 5, .clumps = how.clumps},
+                 share(std::move(empty), first.grains()));
     second.resume(first.time(), first.step_count(), {},
                   share(dem::empty_contacts(3, GrainSimulation::history_fields(first.setup())), contacts));
     for (int k = 44; k < steps; ++k) second.step();
@@ -106,6 +137,8 @@ TEST(GrainGravitySameBits, AfterInterruption) {
     for (int k = 44; k < steps; ++k) first.step();
     EXPECT_EQ(hash_of(world, first), expected) << "saving changed the run";
 }
+INSTANTIATE_TEST_SUITE_P(Grains, GrainGravityStopped, testing::Bool(),
+                         [](const auto& clumps) { return clumps.param ? "Clumps" : "Spheres"; });
 
 }  // namespace
 }  // namespace talus::test

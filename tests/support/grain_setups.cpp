@@ -235,4 +235,10 @@ GrainSetup sheared() {
     return setup;
 }
 
+GrainSetup clumps_sheared() {
+    GrainSetup setup = sheared();
+    setup.clumps = clumps_on_a_floor().clumps;
+    return setup;
+}
+
 }  // namespace talus::test

@@ -36,5 +36,7 @@ ParticleSet many_sizes(const Communicator& comm, const GrainSetup&);
 ParticleSet clumps(const Communicator& comm, const GrainSetup& setup);
 /// Sheared for ever: the images across y move two diameters during the run, half a layer of grains crosses.
 GrainSetup sheared();
+/// The same with the clumps of clumps_on_a_floor(), which reach through the border with one sphere or two.
+GrainSetup clumps_sheared();
 
 }  // namespace talus::test

@@ -50,6 +50,32 @@ TEST(ClumpShapes, WhatSpheresShareCountsOnce) {
     EXPECT_NEAR(shape.inertia.z, across, 1e-4 * across);
 }
 
+// Shares of the mass at the spheres' centres: of two spheres the lever rule; of others those of the volumes
+// if these have the centre of mass already, as spheres do that are apart; else any that do.
+TEST(ClumpShapes, MassLiesAtTheSpheresWithItsCentre) {
+    const std::vector<Vector3<>> two{{0, 0, 0}, {0, 1, 0}}, four{{0, 0, 0}, {1, 0, 0}, {0.2, 1.1, 0}, {0, 0.2, 0.9}};
+    const ClumpShape pair = clump_shape(two, std::vector<double>{0.9, 0.4}, 128);
+    const double lever = norm(pair.centres[1]) / norm(two[1] - two[0]);
+    EXPECT_NEAR(pair.mass_shares[0], lever, 1e-12);
+    EXPECT_NEAR(pair.mass_shares[1], 1 - lever, 1e-12);
+    const std::vector<double> apart{0.4, 0.5, 0.3, 0.35}, overlapping{0.7, 0.8, 0.5, 0.6};
+    for (const std::vector<double>& radii : {apart, overlapping}) {
+        const ClumpShape shape = clump_shape(four, radii, 128);
+        double sum = 0, volume = 0;
+        Vector3<> centre;
+        for (std::size_t k = 0; k < 4; ++k) {
+            EXPECT_GT(shape.mass_shares[k], 0);
+            sum += shape.mass_shares[k];
+            centre += shape.mass_shares[k] * shape.centres[k];
+            volume += std::pow(radii[k], 3);
+        }
+        EXPECT_NEAR(sum, 1, 1e-12);
+        EXPECT_LT(norm(centre), 1e-12);
+        for (std::size_t k = 0; k < 4 && radii == apart; ++k)
+            EXPECT_NEAR(shape.mass_shares[k], std::pow(radii[k], 3) / volume, 1e-12);
+    }
+}
+
 TEST(ClumpShapes, ADuplicateChangesNothing) {
     const std::vector<Vector3<>> once{{0, 0, 0}, {1, 0.5, 0}}, twice{{0, 0, 0}, {1, 0.5, 0}, {1, 0.5, 0}};
     const ClumpShape a = clump_shape(once, std::vector<double>{0.7, 0.6});

@@ -4,8 +4,10 @@
 #include <fstream>
 #include <string>
 
+#include "domain/clump_fields.hpp"
 #include "domain/grain_fields.hpp"
 #include "src/setup/grain_scene.hpp"
+#include "src/setup/hard_impacts.hpp"
 #include "tests/support/own_folder.hpp"
 
 /// Scenes of grains as a user writes them: what they give, and what is said about wrong ones.
@@ -232,6 +234,60 @@ TEST(ShearedScenes, WrongOnesAreRefused) {
     expect(replaced("lower = [0, 0, 0]\nupper", "shear_rate = 20\nlower = [0, 0, 0]\nupper"),
            "holds no walls");
     expect(sheared_scene("shear_rate = \"20 m\"\n", ""), "s-1");
+}
+
+ImpactFindings impacts_of(const std::string& time_step, const std::string& keys_of_grains,
+                          const std::string& more = "") {
+    const Communicator comm(MPI_COMM_SELF);
+    std::string text = scene_text;
+    text.replace(text.find("3e-6"), 4, time_step);
+    text.insert(text.find("radius"), keys_of_grains);
+    text.insert(text.find("[[wall]]"), more);
+    const GrainScene scene = read(text);
+    return find_hard_impacts(comm, scene, make_grains(comm, scene));
+}
+
+// The Rayleigh time of these grains is 27 us, 0.3 of it 8.2 us. A collision with the floor lasts 2.94 d/v (Hertz):
+// 44.6 us at 40 m/s, 5.57 steps of 8 us, and 61.5 us at 8 m/s, 7.7 steps of 8 us or 20.5 of 3 us.
+TEST(SetupGrains, CollisionsOfTooFewStepsAreWarnedOfAndRefused) {
+    const ImpactFindings fast = impacts_of("8e-6", "velocity = [0, 0, -40]\n"),
+                         slow = impacts_of("8e-6", "velocity = [0, 0, -8]\n"),
+                         fine = impacts_of("3e-6", "velocity = [0, 0, -8]\n");
+    ASSERT_EQ(fast.faults.size(), 1U);
+    EXPECT_NE(fast.faults[0].find("'floor' at 40 m/s lasts 5.57"), std::string::npos) << fast.faults[0];
+    EXPECT_NE(fast.faults[0].find("allowed: at most 7.43e-06 s"), std::string::npos) << fast.faults[0];
+    EXPECT_TRUE(slow.faults.empty());
+    ASSERT_EQ(slow.warnings.size(), 1U);
+    EXPECT_NE(slow.warnings[0].find("dem.time_step ="), std::string::npos) << slow.warnings[0];
+    EXPECT_TRUE(fine.faults.empty() && fine.warnings.empty());
+}
+
+// A ball ten times as large presses the grains that it catches: they bear 7.6 us, less than their Rayleigh
+// time allows.
+TEST(SetupGrains, GrainsCaughtUnderAHeavyBallAreWarnedOf) {
+    const std::string ball =
+        "[[grains]]\nname = \"ball\"\nmaterial = \"glass\"\nradius = 0.01\nspacing = 0.02\nshape = \"box\"\n"
+        "lower = [0.02, 0.02, 0.07]\nupper = [0.04, 0.04, 0.09]\nvelocity = [0, 0, -5]\n";
+    const auto warns = [&](const std::string& time_step) {
+        for (const std::string& warning : impacts_of(time_step, "", ball).warnings)
+            if (warning.find("caught under one of 'ball'") != std::string::npos) return true;
+        return false;
+    };
+    EXPECT_TRUE(warns("8e-6"));
+    EXPECT_FALSE(warns("7e-6"));
+}
+
+TEST(ShearedScenes, HoldClumps) {
+    const Communicator comm(MPI_COMM_SELF);
+    std::string text = sheared_scene("shear_rate = 20\n", "");
+    text.replace(text.find("radius = 0.001"), 14, "clump = \"pair\"");
+    const GrainScene scene = read(
+        text + "[clumps.pair]\nx = [0, 0.001]\ny = [0, 0]\nz = [0, 0]\nradii = [0.001, 0.001]\n");
+    const ParticleSet grains = make_grains(comm, scene);
+    ASSERT_GT(grains.size(), 0U);
+    for (std::size_t i = 0; i < grains.size(); ++i)
+        EXPECT_NEAR(grains.data(field::clump_velocity, 0)[i],
+                    20 * (grains.data(field::clump_centre, 1)[i] - 0.05), 1e-12);
 }
 
 TEST(SetupGrains, SourcesAreBodiesOfTheirOwn) {

@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cmath>
+#include <set>
+#include <stdexcept>
 
+#include "domain/grain_fields.hpp"
 #include "physics/dem/shear.hpp"
 #include "src/flow/region_statistics.hpp"
 #include "tests/support/grain_scene.hpp"
@@ -72,6 +75,53 @@ TEST(ShearedGrains, CollideAcrossTheBorderAsInTheMiddle) {
     EXPECT_TRUE(touched);
     EXPECT_GT(norm(state_of(run, 1).angular_velocity - dem::Vector3<>{0, 20, 0}), 5) << "no friction";
     EXPECT_LT(norm(state_of(run, 1).angular_velocity - state_of(run, 3).angular_velocity), 1e-6);
+}
+
+// The same of dumbbells that tumble: while they cross, their spheres are on both sides of the border, and the
+// velocity of a clump changes where its centre crosses, that of a sphere's image where the sphere does.
+TEST(ShearedGrains, ClumpsCollideAcrossTheBorderAsInTheMiddle) {
+    const Communicator comm(MPI_COMM_SELF);
+    GrainSetup setup = sheared_setup();
+    const std::vector<dem::Vector3<>> centres{{-0.004, 0, 0}, {0.004, 0, 0}};
+    const dem::ClumpShape shape = dem::clump_shape(centres, std::vector{0.004, 0.004});
+    setup.clumps = {{std::make_shared<const dem::ClumpShape>(shape), 0, 2500}};
+    const dem::ClumpBody& body = setup.clumps[0];
+    const double s = std::sin(0.6), c = std::cos(0.6);
+    std::vector<dem::ClumpState> clumps;
+    for (const double up : {0.0, 0.0525})
+        for (const dem::ClumpState& state :
+             {dem::moving_clump(body, {0.03, 0.0425 + up, 0.05}, {c, {0, 0, s}}, {0.5, 1.1, 0}, {10, 0, 60}),
+              dem::moving_clump(body, {0.039, 0.0505 + up, 0.0502}, {c, {s, 0, 0}}, {-0.5, 0.3, 0.1},
+                                {0, 20, -90})}) {
+            clumps.push_back(state);
+            clumps.back().velocity.x += dem::shear_flow(setup.box, state.centre.y);
+        }
+    GrainSimulation run(comm, setup, clump_set(comm, setup, clumps));
+    run.start();
+    std::uint64_t most = 0;
+    const auto momentum = [&](std::uint64_t sphere) {
+        for (std::size_t i = 0; i < run.grains().size(); ++i)
+            if (run.grains().data(field::id)[i] == sphere)
+                return dem::clump_state(run.grains(), i).angular_momentum;
+        throw std::logic_error("no such sphere");
+    };
+    const dem::Vector3<> before = momentum(2);
+    std::set<double> borders;  // whole lengths between the spheres of a clump as stored
+    for (int k = 0; k < 1500; ++k) {
+        run.step();
+        most = std::max(most, run.totals().contacts);
+        for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {0, 3}, {2, 3}}) {
+            const Relative middle = relative(run, a, b), border = relative(run, a + 4, b + 4);
+            ASSERT_LT(norm(middle.position - border.position), 1e-12) << "step " << k;
+            ASSERT_LT(norm(middle.velocity - border.velocity), 1e-8) << "step " << k;
+        }
+        borders.insert(std::round((state_of(run, 4).position.y - state_of(run, 5).position.y) / edge));
+        borders.insert(std::round((state_of(run, 6).position.y - state_of(run, 7).position.y) / edge));
+    }
+    EXPECT_GE(most, 2U);
+    EXPECT_GT(borders.size(), 1U) << "no clump reached through the border";
+    EXPECT_GT(norm(momentum(2) - before), 0.1 * norm(before)) << "no collision";
+    EXPECT_LT(norm(momentum(2) - momentum(6)), 1e-9 * norm(before));
 }
 
 // What is asked of a state must not depend on when lists were made either: contacts across the border and the

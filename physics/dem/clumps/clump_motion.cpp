@@ -153,7 +153,8 @@ void ClumpMotion::start(ParticleSet& grains, const PeriodicPlaces& places, std::
     });
 }
 
-void ClumpMotion::drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) const {
+void ClumpMotion::drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places,
+                        const Shear* shear) const {
     if (!exists_) return;
     const ClumpFields clump(grains);
     const auto own = static_cast<std::uint32_t>(grains.size());
@@ -169,7 +170,14 @@ void ClumpMotion::drift(ParticleSet& grains, double time_step, const PeriodicPla
                 const std::uint32_t i = spheres[k];
                 if (i >= own) continue;
                 // Spheres on both sides of a periodic boundary each have their own image of the centre.
-                const Vector3<> centre = clump.centre[i] + moved;
+                Vector3<> centre = clump.centre[i] + moved;
+                if (shear) {
+                    const double before = shear->turns_of(clump.centre[i].y);
+                    centre.x += before * shear->advance();
+                    Vector3<> velocity = state.velocity;
+                    velocity.x -= (shear->turns_of(centre.y) - before) * shear->velocity();
+                    clump.velocity.put(i, velocity);
+                }
                 clump.centre.put(i, centre);
                 clump.turn(i, turned);
                 clump.position.put(i, centre + rounded(places, axes.turned(body.shape->centres[k])));
@@ -177,7 +185,7 @@ void ClumpMotion::drift(ParticleSet& grains, double time_step, const PeriodicPla
         });
 }
 
-void ClumpMotion::predict(ParticleSet& grains, double time_step, GrainRows& rows) const {
+void ClumpMotion::predict(ParticleSet& grains, double time_step, GrainRows& rows, const Shear* shear) const {
     if (!exists_) return;
     const ClumpFields clump(grains);
     const auto own = static_cast<std::uint32_t>(grains.size());
@@ -187,9 +195,20 @@ void ClumpMotion::predict(ParticleSet& grains, double time_step, GrainRows& rows
         state.velocity += time_step * clump.acceleration[some];
         state.angular_momentum += time_step * clump.torque[some];
         const Motion motion(body, state);
-        for (std::size_t k = 0; k < spheres.size(); ++k)
-            if (spheres[k] < own)
-                rows.put_velocities(spheres[k], motion.velocity_at(body.shape->centres[k]), motion.turning);
+        for (std::size_t k = 0; k < spheres.size(); ++k) {
+            if (spheres[k] >= own) continue;
+            Vector3<> velocity = motion.velocity_at(body.shape->centres[k]);
+            if (shear) velocity.x = shear->placed(velocity.x, shear->turns_of(clump.centre[spheres[k]].y));
+            rows.put_velocities(spheres[k], velocity, motion.turning);
+        }
+    });
+}
+
+void ClumpMotion::bring_centres_back(ParticleSet& grains, const Shear& shear) const {
+    if (!exists_) return;
+    const ClumpFields clump(grains);
+    for_each_sphere(grains, [&](std::size_t i, const ClumpBody&, std::size_t) {
+        clump.centre.put(i, shear.brought_back(clump.centre[i], shear.turns_of(clump.position[i].y)));
     });
 }
 
@@ -256,15 +275,63 @@ void ClumpMotion::take_forces(ParticleSet& grains, std::span<const ForceSum> sum
     });
 }
 
-double ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses, const Vector3<>& gravity,
-                                double kick_step, double time_step, double remaining) const {
-    if (!exists_) return 0;
+void ClumpMotion::add_gravity_fields(ParticleSet& grains) {
+    grains.add(field::attracting_mass);
+    grains.add(field::sphere_attraction);
+}
+
+void ClumpMotion::share_masses(ParticleSet& grains) const {
+    std::ranges::copy(grains.own(field::mass), grains.data(field::attracting_mass));
+    for_each_sphere(grains, [&](std::size_t i, const ClumpBody& body, std::size_t sphere) {
+        grains.data(field::attracting_mass)[i] = body.mass() * body.shape->mass_shares[sphere];
+    });
+}
+
+void ClumpMotion::take_attraction(ParticleSet& grains) const {
+    const GrainVectors of_all(grains, field::gravity_acceleration),
+        of_spheres(grains, field::sphere_attraction);
+    for (std::size_t i = 0; i < grains.size(); ++i) of_spheres.put(i, of_all[i]);
+}
+
+ClumpMotion::Attraction ClumpMotion::attraction(ParticleSet& grains, const ClumpBody& body,
+                                                const RotationMatrix& axes,
+                                                std::span<const std::uint32_t> spheres) const {
+    const GrainVectors of_spheres(grains, field::sphere_attraction);
+    Attraction sum;
+    for (std::size_t k = 0; k < spheres.size(); ++k) {
+        const Vector3<> given = body.shape->mass_shares[k] * of_spheres[spheres[k]];
+        sum.acceleration += given;
+        sum.torque += body.mass() * cross(axes.turned(body.shape->centres[k]), given);
+    }
+    return sum;
+}
+
+void ClumpMotion::kick_by_attraction(ParticleSet& grains, double time) const {
+    const ClumpFields clump(grains);
+    const auto own = static_cast<std::uint32_t>(grains.size());
+    for_each_clump(
+        grains, [&](std::size_t some, const ClumpBody& body, std::span<const std::uint32_t> spheres) {
+            const ClumpState state = clump.state(some);
+            const Attraction given = attraction(grains, body, RotationMatrix(state.orientation), spheres);
+            for (const std::uint32_t i : spheres) {
+                if (i >= own) continue;
+                clump.velocity.put(i, state.velocity + time * given.acceleration);
+                clump.angular_momentum.put(i, state.angular_momentum + time * given.torque);
+            }
+        });
+}
+
+ClumpMotion::Path ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses,
+                                           const Vector3<>& gravity, const Impulse& impulse,
+                                           double kick_step, double time_step, double remaining,
+                                           const Shear* shear) const {
+    if (!exists_) return {};
     const ClumpFields clump(grains);
     const GrainVectors sphere_force(grains, field::sphere_force), sphere_torque(grains, field::sphere_torque),
         sphere_velocity(grains, field::velocity), sphere_spin(grains, field::angular_velocity);
     const auto own = static_cast<std::uint32_t>(grains.size());
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
-    double most = 0, spoilt = 0;  // 0 unless a value is infinite or NaN
+    double most = 0, bent = 0, spoilt = 0;  // the last 0 unless a value is infinite or NaN
     for_each_clump(
         grains, [&](std::size_t some, const ClumpBody& body, std::span<const std::uint32_t> spheres) {
             ClumpState state = clump.state(some);
@@ -279,13 +346,21 @@ double ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses,
             state.velocity = remaining * (state.velocity + half_kick * (clump.acceleration[some] + now));
             state.angular_momentum =
                 remaining * (state.angular_momentum + half_kick * (clump.torque[some] + torque));
+            ClumpState next = state;  // what the next drift begins with
+            if (impulse.next > 0) {
+                const Attraction given = attraction(grains, body, axes, spheres);
+                state.velocity += impulse.now * given.acceleration;
+                state.angular_momentum += impulse.now * given.torque;
+                next.velocity = state.velocity + impulse.next * given.acceleration;
+                next.angular_momentum = state.angular_momentum + impulse.next * given.torque;
+            }
             const Motion motion(body, state);
 
             // Each of the angles by which turned_freely() turns is at most time x momentum over moment.
-            const double momentum = norm(state.angular_momentum) + half_step * norm(torque);
+            const double momentum = norm(next.angular_momentum) + half_step * norm(torque);
             const Vector3<> moments = body.inertia();
             const double angle = 3 * time_step * momentum / std::min({moments.x, moments.y, moments.z});
-            const double along = time_step * (norm(state.velocity) + half_step * norm(now));
+            const double along = time_step * (norm(next.velocity) + half_step * norm(now));
             for (std::size_t k = 0; k < spheres.size(); ++k) {
                 const std::uint32_t i = spheres[k];
                 if (i >= own) continue;
@@ -294,14 +369,22 @@ double ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses,
                 clump.angular_momentum.put(i, state.angular_momentum);
                 clump.torque.put(i, torque);
                 motion.give(sphere_velocity, sphere_spin, i, body.shape->centres[k]);
+                const Vector3<> arm = body.shape->centres[k];
+                if (shear) {
+                    Vector3<> velocity = sphere_velocity[i];
+                    velocity.x += (shear->turns_of(clump.centre[i].y) - shear->turns_of(clump.position[i].y)) *
+                                  shear->velocity();
+                    sphere_velocity.put(i, velocity);
+                }
                 const Vector3<> start{responses.start[0][i], responses.start[1][i], responses.start[2][i]};
-                const double moved =
-                    norm(clump.position[i] - start) + along + angle * norm(body.shape->centres[k]);
+                const double moved = norm(clump.position[i] - start) + along + angle * norm(arm);
                 spoilt += moved * 0.0;
                 most = std::max(most, moved);
+                bent = std::max(bent, time_step * half_step * norm(now) + 2 * angle * norm(arm));
             }
         });
-    return spoilt == 0 ? most * most : std::numeric_limits<double>::infinity();
+    if (spoilt != 0) return {std::numeric_limits<double>::infinity(), 0};
+    return {most * most, bent};
 }
 
 }  // namespace talus::dem

@@ -11,6 +11,7 @@
 #include "physics/dem/force_sum.hpp"
 #include "physics/dem/grain_rows.hpp"
 #include "physics/dem/motion.hpp"
+#include "physics/dem/shear.hpp"
 
 namespace talus::dem {
 
@@ -72,9 +73,15 @@ class ClumpMotion {
 
     /// Brings the spheres of new clumps, stored from `first` on, to places that PeriodicPlaces allows.
     void start(ParticleSet& grains, const PeriodicPlaces& places, std::size_t first = 0) const;
-    void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places) const;
-    /// Velocities of the end of the step, as GrainRows::predict().
-    void predict(ParticleSet& grains, double time_step, GrainRows& rows) const;
+    /// After the drift of the spheres for themselves, which it replaces. In a sheared box clump_velocity is
+    /// always that of the image of the centre within the box, and changes at the step at which the centre
+    /// crosses, for all spheres at once, wherever they are themselves.
+    void drift(ParticleSet& grains, double time_step, const PeriodicPlaces& places, const Shear* shear) const;
+    /// Velocities of the end of the step, as GrainRows::predict() and, in a sheared box,
+    /// Shear::place_velocities() after it.
+    void predict(ParticleSet& grains, double time_step, GrainRows& rows, const Shear* shear) const;
+    /// Centres along with their spheres, before Shear::bring_back().
+    void bring_centres_back(ParticleSet& grains, const Shear& shear) const;
 
     /// Which pairs are of spheres of one clump; empty without clumps.
     std::function<bool(std::uint32_t, std::uint32_t)> inner_pairs(const ParticleSet& grains) const;
@@ -88,9 +95,22 @@ class ClumpMotion {
     /// What the copies need: force and torque on each own sphere.
     void take_forces(ParticleSet& grains, std::span<const ForceSum> sums,
                      std::span<const double> units) const;
-    /// The part of the velocities that finish_step() leaves out; returns what it returns.
-    double finish_step(ParticleSet& grains, const Responses& responses, const Vector3<>& gravity,
-                       double kick_step, double time_step, double remaining) const;
+    /// How far spheres get until the end of the next drift.
+    struct Path {
+        double moved2 = 0;  ///< square of the distance from `responses.start`, at most [m2]
+        double bent = 0;    ///< from where their velocities of now take them in a step, at most [m]
+    };
+    /// The part of the velocities that dem::finish_step() leaves out. Of `impulse` only times count.
+    Path finish_step(ParticleSet& grains, const Responses& responses, const Vector3<>& gravity,
+                     const Impulse& impulse, double kick_step, double time_step, double remaining,
+                     const Shear* shear) const;
+
+    /// Under self-gravity: the fields for it, what each own grain attracts with, what the copies need of the
+    /// attraction, and the motion that it gives in a time [s].
+    static void add_gravity_fields(ParticleSet& grains);
+    void share_masses(ParticleSet& grains) const;
+    void take_attraction(ParticleSet& grains) const;
+    void kick_by_attraction(ParticleSet& grains, double time) const;
 
     /// Of the clump of own grain i [J].
     double rotational_energy(const ParticleSet& grains, std::size_t i) const;
@@ -105,6 +125,13 @@ class ClumpMotion {
         std::uint32_t some;   ///< an own one, as stored
         std::uint32_t begin;  ///< of all in spheres_, in order
     };
+    /// What the others' gravity does to a clump.
+    struct Attraction {
+        Vector3<> acceleration;  ///< [m s-2]
+        Vector3<> torque;        ///< about its centre [N m]
+    };
+    Attraction attraction(ParticleSet& grains, const ClumpBody& body, const RotationMatrix& axes,
+                          std::span<const std::uint32_t> spheres) const;
     std::uint64_t list_spheres(const ParticleSet& grains);
     template <class Visit>
     void for_each_sphere(const ParticleSet& grains, Visit&& visit) const;

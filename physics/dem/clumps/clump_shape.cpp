@@ -85,6 +85,30 @@ bool overlap(std::span<const Vector3<>> centres, std::span<const double> radii) 
     return false;
 }
 
+/// Shares v (1 + a + b c), c the centres in units of `length`, v the volumes' shares: four equations for a and
+/// b, of which fewer count if the centres lie in a plane or on a line.
+std::vector<double> mass_shares(std::span<const Vector3<>> centres, std::span<const double> radii,
+                                double length) {
+    Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();
+    double volume = 0;
+    for (const double r : radii) volume += r * r * r;
+    std::vector<Eigen::Vector4d> places;
+    for (std::size_t k = 0; k < radii.size(); ++k) {
+        const Eigen::Vector3d c = eigen(centres[k]) / length;
+        places.emplace_back(1, c.x(), c.y(), c.z());
+        sums += std::pow(radii[k], 3) / volume * places[k] * places[k].transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sums);
+    Eigen::Vector4d factors = Eigen::Vector4d::Zero();
+    for (int e = 0; e < 4; ++e)
+        if (solver.eigenvalues()[e] > 1e-10)
+            factors += solver.eigenvectors()(0, e) / solver.eigenvalues()[e] * solver.eigenvectors().col(e);
+    std::vector<double> shares;
+    for (std::size_t k = 0; k < radii.size(); ++k)
+        shares.push_back(std::pow(radii[k], 3) / volume * factors.dot(places[k]));
+    return shares;
+}
+
 }  // namespace
 
 ClumpShape clump_shape(std::span<const Vector3<>> centres, std::span<const double> radii, int lines) {
@@ -102,7 +126,8 @@ ClumpShape clump_shape(std::span<const Vector3<>> centres, std::span<const doubl
                      .volume = all.volume,
                      .inertia = {moments[0], moments[1], moments[2]},
                      .bounding_radius = 0,
-                     .extent = 0};
+                     .extent = 0,
+                     .mass_shares = {}};
     for (std::size_t k = 0; k < radii.size(); ++k) {
         const Eigen::Vector3d place = axes.transpose() * (eigen(centres[k]) - middle);
         shape.centres.push_back({place.x(), place.y(), place.z()});
@@ -110,6 +135,7 @@ ClumpShape clump_shape(std::span<const Vector3<>> centres, std::span<const doubl
         for (const Vector3<>& other : shape.centres)
             shape.extent = std::max(shape.extent, norm(shape.centres.back() - other));
     }
+    shape.mass_shares = mass_shares(shape.centres, radii, shape.bounding_radius);
     return shape;
 }
 

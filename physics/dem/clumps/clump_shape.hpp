@@ -15,6 +15,9 @@ struct ClumpShape {
     Vector3<> inertia;               ///< principal moments of the union at density 1 [m5]
     double bounding_radius;          ///< about the centre of mass [m]
     double extent;                   ///< greatest distance of two spheres' centres [m]
+    /// Of the mass at each sphere's centre, for gravity: they add up to 1 with the clump's centre of mass,
+    /// and differ from those of the spheres' volumes as little as that takes (least squares, relative) [1].
+    std::vector<double> mass_shares;
 };
 
 /// Volume, centre and moments are exact for spheres that do not overlap; else the union is integrated along

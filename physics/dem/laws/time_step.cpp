@@ -35,6 +35,10 @@ double packed_lattice_limit(double mass, double normal_stiffness, double tangent
     return 2 / std::sqrt(square_of_frequency) * damped;
 }
 
+double stable_step_of_mode(double frequency2, double damping_rate) {
+    return 2 / (damping_rate + std::sqrt(damping_rate * damping_rate + frequency2));
+}
+
 double squeezed_film_limit(double mass, double radius, double viscosity, double roughness, double reach) {
     const double damping = 6 * std::numbers::pi * viscosity * radius * radius * (1 / roughness - 1 / reach);
     return mass / (2 * damping);

@@ -35,4 +35,10 @@ double packed_lattice_limit(double mass, double normal_stiffness, double tangent
 /// grains has the same rate.
 double squeezed_film_limit(double mass, double radius, double viscosity, double roughness, double reach);
 
+/// Greatest stable step of a mode of frequency omega and damping rate c, x'' = -omega^2 x - c x', whose force
+/// sees positions of the end of the step and velocities predicted to it [s]: at the wall motion changes sign
+/// each step, the predicted velocity is twice that of the middle of the step, and 4 = (omega dt)^2 + 4 c dt.
+/// `frequency2`: omega^2 [s-2], `damping_rate`: c [s-1]; infinite if both are 0.
+double stable_step_of_mode(double frequency2, double damping_rate);
+
 }  // namespace talus::dem
