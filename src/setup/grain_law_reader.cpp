@@ -156,7 +156,10 @@ GrainTimeStep GrainLawReader::time_step_of(const GrainBody& body) const {
         const double ratio = 0.5 * dem::linear_damping(material.restitution, end_);
         const double lattice =
             dem::packed_lattice_limit(mass, stiffness_, stiffness_ratio_ * stiffness_, ratio);
-        limit = {lattice, 0.25 * lattice,
+        // A quarter of what undamped springs bear, less what one dashpot takes.
+        const double usual = 0.25 * dem::packed_lattice_limit(mass, stiffness_, stiffness_ratio_ * stiffness_, 0) *
+                             (std::sqrt(1 + ratio * ratio) - ratio);
+        limit = {lattice, std::min(usual, 0.7 * lattice),
                  fmt::format("the limit of densely packed grains of {:.4g} m of '{}' that move and turn", r,
                              body.name)};
     } else {

@@ -1,5 +1,6 @@
 #include "tests/support/grain_scene.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <stdexcept>
 
@@ -89,21 +90,33 @@ ParticleSet clump_set(const Communicator& comm, const GrainSetup& setup,
     return set;
 }
 
+namespace {
+
+std::size_t place_of(const ParticleSet& set, std::uint64_t id) {
+    const auto ids = set.own(field::id);
+    const auto found = std::find(ids.begin(), ids.end(), id);
+    if (found == ids.end()) throw std::logic_error("no such grain on this rank");
+    return static_cast<std::size_t>(found - ids.begin());
+}
+
+}  // namespace
+
 GrainState state_of(const GrainSimulation& simulation, std::uint64_t id) {
     const ParticleSet& set = simulation.grains();
-    for (std::size_t i = 0; i < set.size(); ++i) {
-        if (set.data(field::id)[i] != id) continue;
-        const auto take = [&](const Field<double>& field) {
-            return dem::Vector3<>{set.data(field, 0)[i], set.data(field, 1)[i], set.data(field, 2)[i]};
-        };
-        return {take(field::position),
-                take(field::velocity),
-                take(field::angular_velocity),
-                set.data(field::radius)[i],
-                0,
-                set.data(field::body)[i]};
-    }
-    throw std::logic_error("no such grain on this rank");
+    const std::size_t i = place_of(set, id);
+    const auto take = [&](const Field<double>& field) {
+        return dem::Vector3<>{set.data(field, 0)[i], set.data(field, 1)[i], set.data(field, 2)[i]};
+    };
+    return {take(field::position),
+            take(field::velocity),
+            take(field::angular_velocity),
+            set.data(field::radius)[i],
+            0,
+            set.data(field::body)[i]};
+}
+
+dem::ClumpState clump_of(const GrainSimulation& simulation, std::uint64_t id) {
+    return dem::clump_state(simulation.grains(), place_of(simulation.grains(), id));
 }
 
 }  // namespace talus::test

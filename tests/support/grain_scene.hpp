@@ -36,5 +36,7 @@ ParticleSet clump_set(const Communicator& comm, const GrainSetup& setup,
 
 /// State of the grain with this id, which must be on this rank.
 GrainState state_of(const GrainSimulation& simulation, std::uint64_t id);
+/// State of the clump of this sphere, likewise.
+dem::ClumpState clump_of(const GrainSimulation& simulation, std::uint64_t id);
 
 }  // namespace talus::test

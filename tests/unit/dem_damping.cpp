@@ -177,8 +177,8 @@ TEST(GrainTimeStep, PackedLatticeLimitIsTheFastestWaveOfTheClosestPacking) {
     }
     EXPECT_NEAR(packed_lattice_limit(1, 1, 0, 0), 0.7071, 1e-4);
     EXPECT_NEAR(packed_lattice_limit(1, 1, 0.5, 0), 0.316, 5e-4);
-    EXPECT_NEAR(packed_lattice_limit(1, 1, 1, 0.2) / packed_lattice_limit(1, 1, 1, 0), std::sqrt(1.04) - 0.2,
-                1e-12);
+    // 4 = 80 dt^2 + 4 c dt, c = 40 gamma_t/m, gamma_t = 0.2 sqrt(2 k_n m)
+    EXPECT_NEAR(packed_lattice_limit(1, 1, 1, 0.2), 2 / (8 * std::sqrt(2) + std::sqrt(208)), 1e-12);
 }
 
 }  // namespace

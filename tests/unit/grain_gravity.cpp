@@ -164,7 +164,7 @@ TEST(GrainGravity, ClumpsAttractAsTheirSpheresAndTurnEachOther) {
     GrainSimulation run = dumbbells(comm, step, 1);
     run.start();
     const dem::ClumpBody body = run.setup().clumps[0];
-    const dem::ClumpState first = dem::clump_state(run.grains(), 0), second = dem::clump_state(run.grains(), 2);
+    const dem::ClumpState first = clump_of(run, 0), second = clump_of(run, 2);
     Vector3<> force, torque;
     for (std::size_t k = 0; k < 2; ++k)
         for (std::size_t l = 0; l < 2; ++l) {
@@ -177,7 +177,7 @@ TEST(GrainGravity, ClumpsAttractAsTheirSpheresAndTurnEachOther) {
         }
     ASSERT_GT(norm(torque), 0.05 * radius * norm(force));
     run.step();  // half of an impulse at the start, half at the end: within a step of the first
-    const dem::ClumpState then = dem::clump_state(run.grains(), 0), other = dem::clump_state(run.grains(), 2);
+    const dem::ClumpState then = clump_of(run, 0), other = clump_of(run, 2);
     const double mass = body.mass();
     EXPECT_LT(norm((mass / step) * (then.velocity - first.velocity) - force), 1e-4 * norm(force));
     EXPECT_LT(norm((1 / step) * (then.angular_momentum - first.angular_momentum) - torque), 1e-3 * norm(torque));
@@ -206,7 +206,7 @@ TEST(GrainGravity, TumblingDumbbellsKeepWhatIsConserved) {
         }
         const GrainTotals after = run.totals();
         EXPECT_EQ(run.evaluated_contacts(), 0U);
-        EXPECT_GT(most_rotation, 0.02 * before.kinetic_energy);
+        EXPECT_GT(most_rotation, 0.01 * before.kinetic_energy);
         const double size = 0.5 * before.mass * before.greatest_speed;
         for (std::size_t a = 0; a < 3; ++a) {
             EXPECT_LT(std::abs(after.momentum[a]), 1e-12 * size);

@@ -30,9 +30,11 @@ double hertz_tangent_stiffness(double effective_modulus, double effective_radius
 double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
                             double damping_ratio) {
     const double ratio = 2 * tangential_stiffness / normal_stiffness;
-    const double square_of_frequency = std::max(8 * (1 + ratio), 40 * ratio) * normal_stiffness / mass;
-    const double damped = std::sqrt(1 + damping_ratio * damping_ratio) - damping_ratio;
-    return 2 / std::sqrt(square_of_frequency) * damped;
+    const double frequency2 = normal_stiffness / mass;  // of one contact
+    const double damping = damping_ratio * std::sqrt(2 * frequency2),  // gamma_n/m, and gamma_t/m
+        across = damping * std::sqrt(tangential_stiffness / normal_stiffness);
+    return std::min(stable_step_of_mode(8 * (1 + ratio) * frequency2, 8 * (damping + across)),
+                    stable_step_of_mode(40 * ratio * frequency2, 40 * across));
 }
 
 double stable_step_of_mode(double frequency2, double damping_rate) {
