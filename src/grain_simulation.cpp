@@ -486,16 +486,6 @@ ParticleSet GrainSimulation::saved_bonds() const {
 
 double GrainSimulation::stable_step_of_bonds() const { return comm_.all_min(bonds_.stable_step(grains_)); }
 
-std::uint64_t GrainSimulation::bytes_of_lists() const {
-    std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
-    bytes += pairs_.bytes() + at_walls_.bytes() + bonds_.bytes() + rows_halo_.bytes();
-    bytes += clumps_.bytes() + units_.capacity() * sizeof(double);
-    for (const StaggeredVector<double>* values :
-         {&responses_.acceleration, &responses_.start[0], &responses_.start[1], &responses_.start[2]})
-        bytes += values->capacity() * sizeof(double);
-    return bytes;
-}
-
 void GrainSimulation::reset_counters() {
     evaluated_ = lists_ = 0;
     if (gravity_) gravity_->reset_counts();

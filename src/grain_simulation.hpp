@@ -67,7 +67,7 @@ struct GrainTotals {
     /// That grains pressed between others bore at the looks of this run so far, the least, and the overlap
     /// of that one over its radius [s], [1].
     double stable_step = 0, overlap_of_stable_step = 0;
-    std::uint64_t grains = 0;     ///< a clump is one, as in the coordination
+    std::uint64_t grains = 0;  ///< a clump is one, as in the coordination
     std::uint64_t contacts = 0, wall_contacts = 0;
     std::uint64_t bonds = 0, broken_bonds = 0;
     /// Of the grains on each wall at the last evaluation [N], and their torques about the centre of its
@@ -207,8 +207,8 @@ class GrainSimulation {
     double time_ = 0;
     std::uint64_t step_ = 0, last_balance_ = 0;
     bool outdated_ = false;
-    double moved_ = 0;     ///< no grain of any rank has moved farther since the last list [m]
-    int quiet_looks_ = 0;  ///< in a row, while grains settle
+    double moved_ = 0;                     ///< no grain of any rank has moved farther since the last list [m]
+    int quiet_looks_ = 0;                  ///< in a row, while grains settle
     dem::HardestPressed hardest_pressed_;  ///< of this rank
     std::vector<std::string> notes_;
     std::string fault_;

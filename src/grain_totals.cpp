@@ -20,6 +20,16 @@ std::vector<dem::LoadedContact> GrainSimulation::loaded_contacts() {
     return contacts;
 }
 
+std::uint64_t GrainSimulation::bytes_of_lists() const {
+    std::size_t bytes = sums_.capacity() * sizeof(dem::ForceSum) + rows_.bytes();
+    bytes += pairs_.bytes() + at_walls_.bytes() + bonds_.bytes() + rows_halo_.bytes();
+    bytes += clumps_.bytes() + units_.capacity() * sizeof(double);
+    for (const StaggeredVector<double>* values :
+         {&responses_.acceleration, &responses_.start[0], &responses_.start[1], &responses_.start[2]})
+        bytes += values->capacity() * sizeof(double);
+    return bytes;
+}
+
 /// Steps are chosen for contacts as they are expected: some are pressed harder than that, which lasts longer
 /// than the steps between two looks.
 void GrainSimulation::look_at_pressed_grains() {
@@ -40,8 +50,7 @@ GrainTotals GrainSimulation::totals() const {
     const std::array<double, 3> g{setup_.gravity.x, setup_.gravity.y, setup_.gravity.z};
     // Contacts, at walls, grains that are not held, bonds, ends of broken ones, grains.
     std::array<std::uint64_t, 6> counts{};
-    const double* attracted =
-        attraction && clumps_.exists() ? grains_.data(field::attracting_mass) : m;
+    const double* attracted = attraction && clumps_.exists() ? grains_.data(field::attracting_mass) : m;
     for (std::size_t i = 0; i < grains_.size(); ++i) {
         if (attraction) sums[potential].add(0.5 * attracted[i] * attraction[i]);
         if (!clumps_.counts(body[i], grains_.data(field::id)[i])) continue;

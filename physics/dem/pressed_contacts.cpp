@@ -57,9 +57,9 @@ void PressedGrain::add(const PressedContact& contact, double arm_share) {
 }
 
 double PressedGrain::stable_step(double mass) const {
-    return std::min(stable_step_of_mode(sum_.stiffness / mass, sum_.damping / mass),
-                    stable_step_of_mode(5 * sum_.tangential_stiffness / mass,
-                                        2.5 * sum_.tangential_damping / mass));
+    return std::min(
+        stable_step_of_mode(sum_.stiffness / mass, sum_.damping / mass),
+        stable_step_of_mode(5 * sum_.tangential_stiffness / mass, 2.5 * sum_.tangential_damping / mass));
 }
 
 HardestPressed find_hardest_pressed(const GrainRows& rows, std::size_t own, const AnyLawTable& laws,

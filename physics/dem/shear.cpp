@@ -59,8 +59,7 @@ void Shear::drift(ParticleSet& grains, std::span<const ForceSum> rates, double t
 void Shear::place_velocities(const ParticleSet& grains, GrainRows& rows) const {
     const double* y = grains.data(field::position, 1);
     double* v = rows.values().data() + GrainRows::velocity_at;
-    for (std::size_t i = 0; i < grains.size(); ++i, v += GrainRows::width)
-        *v = placed(*v, turns_of(y[i]));
+    for (std::size_t i = 0; i < grains.size(); ++i, v += GrainRows::width) *v = placed(*v, turns_of(y[i]));
 }
 
 void Shear::bring_back(ParticleSet& grains) const {

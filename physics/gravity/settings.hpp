@@ -30,7 +30,7 @@ struct Settings {
     const Field<double>* softening_field = &field::smoothing_length;
     double softening_factor = 1;
     const Field<double>* mass_field = &field::mass;  ///< by which particles attract and are attracted [kg]
-    double step_factor = 0.25;  ///< C in dt = C sqrt(h/|g|)
+    double step_factor = 0.25;                       ///< C in dt = C sqrt(h/|g|)
     Precision precision = Precision::single_precision;
     int leaf_size = 32;   ///< most particles in a leaf of the tree
     int group_size = 64;  ///< most particles that share a list of interactions

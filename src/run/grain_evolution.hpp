@@ -64,8 +64,8 @@ class GrainEvolution : public Evolution {
     Shrunk shrunk_;                                          ///< at the start
     double first_overlap_ = 0;                               ///< over the radius [1]
     Watch overlap_{most_overlap_of_hard_grains};             ///< of what diagnostics saw
-    Watch step_share_{1};                 ///< the time step over what pressed grains bear, likewise
-    double overlap_of_stable_step_ = 0;   ///< over the radius [1]
+    Watch step_share_{1};                ///< the time step over what pressed grains bear, likewise
+    double overlap_of_stable_step_ = 0;  ///< over the radius [1]
     std::vector<std::string> impact_warnings_;
 };
 

@@ -151,23 +151,25 @@ GrainTimeStep GrainLawReader::time_step_of(const GrainBody& body) const {
     const dem::GrainMaterial& material = body.material;
     const double density = body.least_density.value_or(material.density);
     const double mass = 4.0 / 3.0 * std::numbers::pi * r * r * r * density;
-    GrainTimeStep limit;
+    GrainTimeStep limit{};
     if (elasticity_ == Elasticity::linear) {
         const double ratio = 0.5 * dem::linear_damping(material.restitution, end_);
-        const double lattice =
-            dem::packed_lattice_limit(mass, stiffness_, stiffness_ratio_ * stiffness_, ratio);
-        // A quarter of what undamped springs bear, less what one dashpot takes.
-        const double usual = 0.25 * dem::packed_lattice_limit(mass, stiffness_, stiffness_ratio_ * stiffness_, 0) *
-                             (std::sqrt(1 + ratio * ratio) - ratio);
-        limit = {lattice, std::min(usual, 0.7 * lattice),
+        const auto lattice = [&](double damping) {
+            return dem::packed_lattice_limit(mass, stiffness_, stiffness_ratio_ * stiffness_, damping);
+        };
+        const double one_dashpot = lattice(0) * (std::sqrt(1 + ratio * ratio) - ratio);
+        limit = {one_dashpot, std::min(0.25 * one_dashpot, 0.7 * lattice(ratio)),
                  fmt::format("the limit of densely packed grains of {:.4g} m of '{}' that move and turn", r,
-                             body.name)};
+                             body.name),
+                 lattice(ratio)};
     } else {
         const double rayleigh =
             dem::rayleigh_time(r, density, dem::shear_modulus(material), material.poisson_ratio);
-        limit = {greatest_share * rayleigh, usual_share * rayleigh,
-                 fmt::format("{} of the time in which a Rayleigh wave crosses a grain of {:.4g} m of '{}'",
-                             greatest_share, r, body.name)};
+        limit.greatest = greatest_share * rayleigh;
+        limit.usual = usual_share * rayleigh;
+        limit.reason =
+            fmt::format("{} of the time in which a Rayleigh wave crosses a grain of {:.4g} m of '{}'",
+                        greatest_share, r, body.name);
     }
     if (surface_force_ != SurfaceForce::lubrication) return limit;
     const double squeezed =
@@ -175,17 +177,21 @@ GrainTimeStep GrainLawReader::time_step_of(const GrainBody& body) const {
     if (squeezed < limit.greatest)
         limit = {squeezed, std::min(limit.usual, 0.5 * squeezed),
                  fmt::format("the limit of the film between a grain of {:.4g} m of '{}' and two walls", r,
-                             body.name)};
+                             body.name),
+                 limit.packed};
     return limit;
 }
 
 GrainTimeStep GrainLawReader::time_step(const std::vector<GrainBody>& bodies) const {
     GrainTimeStep limit{infinity, infinity, ""};
+    double packed = infinity;
     for (const GrainBody& body : bodies) {
         if (body.held) continue;
         const GrainTimeStep found = time_step_of(body);
+        packed = std::min(packed, found.packed);
         if (found.greatest < limit.greatest) limit = found;
     }
+    limit.packed = packed;
     if (!(limit.greatest < infinity)) limit.usual = 1;  // nothing moves
     return limit;
 }

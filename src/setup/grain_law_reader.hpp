@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ struct GrainTimeStep {
     double greatest;     ///< that is stable [s]
     double usual;        ///< where none is asked for [s]
     std::string reason;  ///< of the greatest
+    /// Above which the densest packing of damped grains shakes; looser ones bear more [s].
+    double packed = std::numeric_limits<double>::infinity();
 };
 
 /// Reads the law of [dem], the materials that grains and walls name and the pairs of [[contact]]. Faults are

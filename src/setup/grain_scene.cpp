@@ -277,6 +277,12 @@ GrainScene read_grains_of(const Communicator& comm, const Scene& scene) {
     if (time_step > limit.greatest)
         table.error("time_step", fmt::format("is above the stable one; allowed: at most {:.4g} s, {}",
                                              limit.greatest, limit.reason));
+    if (time_step > limit.packed)
+        warnings.push_back(fmt::format(
+            "dem.time_step = {:.4g} s: the densest packing of grains that turn bears {:.4g} s with the "
+            "damping of "
+            "their restitution, and shakes beyond; with half as many contacts it bears twice that",
+            time_step, limit.packed));
     std::optional<GrainSettling> settling = read_settling(root, time_step, flow, walls);
     std::vector<WatchedRegion> regions = read_regions(root, context);
     const bool write_contacts = root.section("output").flag("contacts", false);
@@ -397,7 +403,8 @@ ParticleSet make_grains(const Communicator& comm, const GrainScene& scene) {
             grains.data(field::id)[i] = id;
             grains.data(field::body)[i] = static_cast<std::uint8_t>(b);
             if (body.clump) {
-                make_sphere(grains, i, scene.simulation.clumps[b], body, scene.simulation.box, row, id, random);
+                make_sphere(grains, i, scene.simulation.clumps[b], body, scene.simulation.box, row, id,
+                            random);
                 continue;
             }
             for (int axis = 0; axis < 3; ++axis) {

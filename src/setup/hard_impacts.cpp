@@ -26,8 +26,8 @@ struct Impactor {
     bool is_wall = false;
     double least_radius = 0, least_mass = 0, greatest_radius = 0, greatest_mass = 0;
     dem::Vector3<> velocity{};  ///< the middle of all
-    double spread = 0;        ///< of it, at most [m/s]
-    double highest = 0;       ///< against gravity, above the lowest of all grains [m]
+    double spread = 0;          ///< of it, at most [m/s]
+    double highest = 0;         ///< against gravity, above the lowest of all grains [m]
 };
 
 double sphere_mass(double radius, double density) {
@@ -180,18 +180,19 @@ ImpactFindings find_hard_impacts(const Communicator& comm, const GrainScene& sce
             if (b.is_wall || !(fastest > 0)) continue;
             const double r = b.least_radius, radius = r * a.greatest_radius / (r + a.greatest_radius);
             // Half of the energy in each of two contacts, but not deeper than to the middle.
-            const double overlap = std::min(
-                r, std::pow(15 * 0.5 * a.greatest_mass * fastest * fastest / (16 * modulus * std::sqrt(radius)),
-                            0.4));
+            const double overlap = std::min(r, std::pow(15 * 0.5 * a.greatest_mass * fastest * fastest /
+                                                            (16 * modulus * std::sqrt(radius)),
+                                                        0.4));
             if (const double step = borne_when_caught(setup.laws, a, b, overlap); step < caught.step)
                 caught = {step, overlap / r, fastest, &a, &b};
         }
     const auto lasts = [&](const Worst& worst, double enough) {
-        return fmt::format("a collision of {} at {:.3g} m/s lasts {:.3g} steps of {:.4g} s, too few for the "
-                           "restitution of the materials; {} {:.3g} s",
-                           worst.pair, worst.speed, worst.steps, setup.time_step,
-                           enough == fewest_steps ? "allowed: at most" : "dem.time_step =",
-                           worst.steps / enough * setup.time_step);
+        return fmt::format(
+            "a collision of {} at {:.3g} m/s lasts {:.3g} steps of {:.4g} s, too few for the "
+            "restitution of the materials; {} {:.3g} s",
+            worst.pair, worst.speed, worst.steps, setup.time_step,
+            enough == fewest_steps ? "allowed: at most" : "dem.time_step =",
+            worst.steps / enough * setup.time_step);
     };
     if (named.steps < fewest_steps)
         found.faults.push_back(lasts(named, fewest_steps));
@@ -199,7 +200,8 @@ ImpactFindings find_hard_impacts(const Communicator& comm, const GrainScene& sce
         found.warnings.push_back(lasts(likely, enough_steps));
     if (setup.time_step > caught.step)
         found.warnings.push_back(fmt::format(
-            "a grain of '{}' caught under one of '{}' that comes with {:.3g} m/s is pressed in by up to {:.2g} "
+            "a grain of '{}' caught under one of '{}' that comes with {:.3g} m/s is pressed in by up to "
+            "{:.2g} "
             "of its radius and bears steps of {:.3g} s, not {:.4g} s: it would shake and spoil the rebound; "
             "dem.time_step = {:.2g} s",
             caught.grain->name, caught.mover->name, caught.speed, caught.overlap, caught.step,

@@ -129,9 +129,9 @@ TEST_P(GrainGravityStopped, GoesOnWithTheSameBits) {
     };
     ParticleSet empty("grains", 3);
     GrainSimulation::add_fields(empty, first.setup());
-    GrainSimulation second =
-        prepared(world, {.partition = PartitionMethod::bisection, .rebalance_interval = 5, .clumps = how.clumps},
-                 share(std::move(empty), first.grains()));
+    GrainSimulation second = prepared(
+        world, {.partition = PartitionMethod::bisection, .rebalance_interval = 5, .clumps = how.clumps},
+        share(std::move(empty), first.grains()));
     second.resume(first.time(), first.step_count(), {},
                   share(dem::empty_contacts(3, GrainSimulation::history_fields(first.setup())), contacts));
     for (int k = 44; k < steps; ++k) second.step();

@@ -189,8 +189,9 @@ double worst_restitution(const Communicator& comm, double steps) {
 /// miss it by more than a tenth: where scenes are warned and refused (src/setup/hard_impacts.hpp).
 TEST(HertzContacts, AHeadOnCollisionNeedsTenSteps) {
     const std::vector<double> steps{24, 16, 10, 6, 5};
-    const auto found = on_shared_ranks(
-        steps.size(), [&](const Communicator& comm, std::size_t c) { return worst_restitution(comm, steps[c]); });
+    const auto found = on_shared_ranks(steps.size(), [&](const Communicator& comm, std::size_t c) {
+        return worst_restitution(comm, steps[c]);
+    });
     for (std::size_t c = 0; c < steps.size(); ++c) {
         const double error = std::abs(found[c] / soft.restitution - 1);
         if (steps[c] >= 10)
@@ -218,18 +219,19 @@ Squeezed squeeze(const Communicator& comm, double speed, double time_step) {
     GrainSetup setup = grain_setup({soft, steel}, r, time_step);
     setup.walls = {{"floor", 1, dem::PlaneShape{{}, {0, 0, 1}}, {}}};
     const double touching = r + std::sqrt((large + r) * (large + r) - aside * aside);
-    GrainSimulation run(comm, setup,
-                        grain_set(comm, {{{aside, 0, r}, {}, {}, r, soft.density, 0},
-                                         {{0, 0, touching + 1e-6}, {0, 0, -speed}, {}, large, steel.density, 1}}));
+    GrainSimulation run(
+        comm, setup,
+        grain_set(comm, {{{aside, 0, r}, {}, {}, r, soft.density, 0},
+                         {{0, 0, touching + 1e-6}, {0, 0, -speed}, {}, large, steel.density, 1}}));
     run.start();
     while (run.time() < 1e-5 || (state_of(run, 1).velocity.z < 0 && run.time() < 2e-3)) run.step();
     for (const double end = run.time() + 1e-3; run.time() < end;) run.step();
     return {state_of(run, 1).velocity.z / speed, run.totals().stable_step};
 }
 
-/// A Hertzian grain that is squeezed gets so stiff that it turns to and fro at each step and takes energy from
-/// the ball, at steps that its Rayleigh time allows (2.5 us). dem::PressedGrain says where: a tenth below, the
-/// rebound is that of a quarter of the step to 1 %; a third above, a tenth of it and more is lost.
+/// A Hertzian grain that is squeezed gets so stiff that it turns to and fro at each step and takes energy
+/// from the ball, at steps that its Rayleigh time allows (2.5 us). dem::PressedGrain says where: a tenth
+/// below, the rebound is that of a quarter of the step to 1 %; a third above, a tenth of it and more is lost.
 TEST(HertzContacts, ASqueezedGrainShakesBeyondTheStepOfItsStiffness) {
     const std::vector<double> shares{0.25, 0.9, 1.35};
     for (const double speed : {1.0, 3.0}) {

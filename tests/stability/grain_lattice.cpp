@@ -93,7 +93,8 @@ double growth(const Communicator& comm, double time_step, double restitution = 1
                                       radius,
                                       mass / (4.0 / 3 * std::numbers::pi)});
                 }
-    const dem::GrainMaterial material{.name = "ball", .density = 1, .restitution = restitution, .friction = 1};
+    const dem::GrainMaterial material{
+        .name = "ball", .density = 1, .restitution = restitution, .friction = 1};
     GrainSetup setup = grain_setup({material}, radius, time_step);
     setup.laws = linear_table(material, stiffness);
     setup.box = {.dimension = 3, .upper = {cells * edge, cells * edge, cells * edge}};

@@ -53,7 +53,8 @@ TEST(ClumpShapes, WhatSpheresShareCountsOnce) {
 // Shares of the mass at the spheres' centres: of two spheres the lever rule; of others those of the volumes
 // if these have the centre of mass already, as spheres do that are apart; else any that do.
 TEST(ClumpShapes, MassLiesAtTheSpheresWithItsCentre) {
-    const std::vector<Vector3<>> two{{0, 0, 0}, {0, 1, 0}}, four{{0, 0, 0}, {1, 0, 0}, {0.2, 1.1, 0}, {0, 0.2, 0.9}};
+    const std::vector<Vector3<>> two{{0, 0, 0}, {0, 1, 0}},
+        four{{0, 0, 0}, {1, 0, 0}, {0.2, 1.1, 0}, {0, 0.2, 0.9}};
     const ClumpShape pair = clump_shape(two, std::vector<double>{0.9, 0.4}, 128);
     const double lever = norm(pair.centres[1]) / norm(two[1] - two[0]);
     EXPECT_NEAR(pair.mass_shares[0], lever, 1e-12);

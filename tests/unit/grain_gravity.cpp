@@ -169,7 +169,8 @@ TEST(GrainGravity, ClumpsAttractAsTheirSpheresAndTurnEachOther) {
     for (std::size_t k = 0; k < 2; ++k)
         for (std::size_t l = 0; l < 2; ++l) {
             const Vector3<> apart = state_of(run, 2 + l).position - state_of(run, k).position;
-            const double masses = body.mass() * body.mass() * body.shape->mass_shares[k] * body.shape->mass_shares[l];
+            const double masses =
+                body.mass() * body.mass() * body.shape->mass_shares[k] * body.shape->mass_shares[l];
             const Vector3<> on_sphere =
                 (gravity::newton_constant * masses / std::pow(norm(apart), 3)) * apart;
             force += on_sphere;
@@ -180,7 +181,8 @@ TEST(GrainGravity, ClumpsAttractAsTheirSpheresAndTurnEachOther) {
     const dem::ClumpState then = clump_of(run, 0), other = clump_of(run, 2);
     const double mass = body.mass();
     EXPECT_LT(norm((mass / step) * (then.velocity - first.velocity) - force), 1e-4 * norm(force));
-    EXPECT_LT(norm((1 / step) * (then.angular_momentum - first.angular_momentum) - torque), 1e-3 * norm(torque));
+    EXPECT_LT(norm((1 / step) * (then.angular_momentum - first.angular_momentum) - torque),
+              1e-3 * norm(torque));
     EXPECT_LT(norm(mass * (other.velocity - second.velocity) + mass * (then.velocity - first.velocity)),
               1e-12 * norm(force) * step);
 }
@@ -210,7 +212,8 @@ TEST(GrainGravity, TumblingDumbbellsKeepWhatIsConserved) {
         const double size = 0.5 * before.mass * before.greatest_speed;
         for (std::size_t a = 0; a < 3; ++a) {
             EXPECT_LT(std::abs(after.momentum[a]), 1e-12 * size);
-            EXPECT_LT(std::abs(after.angular_momentum[a] - before.angular_momentum[a]), 1e-12 * size * 5 * radius);
+            EXPECT_LT(std::abs(after.angular_momentum[a] - before.angular_momentum[a]),
+                      1e-12 * size * 5 * radius);
         }
         errors.push_back(error / before.kinetic_energy);
     }

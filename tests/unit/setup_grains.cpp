@@ -247,8 +247,8 @@ ImpactFindings impacts_of(const std::string& time_step, const std::string& keys_
     return find_hard_impacts(comm, scene, make_grains(comm, scene));
 }
 
-// The Rayleigh time of these grains is 27 us, 0.3 of it 8.2 us. A collision with the floor lasts 2.94 d/v (Hertz):
-// 44.6 us at 40 m/s, 5.57 steps of 8 us, and 61.5 us at 8 m/s, 7.7 steps of 8 us or 20.5 of 3 us.
+// The Rayleigh time of these grains is 27 us, 0.3 of it 8.2 us. A collision with the floor lasts 2.94 d/v
+// (Hertz): 44.6 us at 40 m/s, 5.57 steps of 8 us, and 61.5 us at 8 m/s, 7.7 steps of 8 us or 20.5 of 3 us.
 TEST(SetupGrains, CollisionsOfTooFewStepsAreWarnedOfAndRefused) {
     const ImpactFindings fast = impacts_of("8e-6", "velocity = [0, 0, -40]\n"),
                          slow = impacts_of("8e-6", "velocity = [0, 0, -8]\n"),
@@ -260,6 +260,25 @@ TEST(SetupGrains, CollisionsOfTooFewStepsAreWarnedOfAndRefused) {
     ASSERT_EQ(slow.warnings.size(), 1U);
     EXPECT_NE(slow.warnings[0].find("dem.time_step ="), std::string::npos) << slow.warnings[0];
     EXPECT_TRUE(fine.faults.empty() && fine.warnings.empty());
+}
+
+// Springs of 1 kN/m under grains of 10 mg, restitution 0.6: with c = 40 gamma_t/m of the closest packing and
+// k_t = 2/7 k_n 4 = (80 k_t/m) dt^2 + 4 c dt at 17 us, of undamped springs at 43 us; above 37 us they are
+// refused.
+TEST(SetupGrains, StepsThatTheClosestPackingDoesNotBearAreWarnedOf) {
+    const auto warned = [](const std::string& time_step) {
+        std::string text = replaced("gravity =", "law = \"linear\"\nstiffness = 1000\ngravity =");
+        const std::string of_hertz = "youngs_modulus = 1e8\npoisson_ratio = 0.3\n";
+        text.replace(text.find(of_hertz), of_hertz.size(), "");
+        text.replace(text.find("3e-6"), 4, time_step);
+        const std::vector<std::string> warnings = read(text).warnings;
+        return std::ranges::any_of(warnings, [](const std::string& w) {
+            return w.find("the densest packing") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(warned("1.8e-5"));
+    EXPECT_TRUE(warned("3.5e-5"));
+    EXPECT_FALSE(warned("1.6e-5"));
 }
 
 // A ball ten times as large presses the grains that it catches: they bear 7.6 us, less than their Rayleigh
@@ -281,8 +300,8 @@ TEST(ShearedScenes, HoldClumps) {
     const Communicator comm(MPI_COMM_SELF);
     std::string text = sheared_scene("shear_rate = 20\n", "");
     text.replace(text.find("radius = 0.001"), 14, "clump = \"pair\"");
-    const GrainScene scene = read(
-        text + "[clumps.pair]\nx = [0, 0.001]\ny = [0, 0]\nz = [0, 0]\nradii = [0.001, 0.001]\n");
+    const GrainScene scene =
+        read(text + "[clumps.pair]\nx = [0, 0.001]\ny = [0, 0]\nz = [0, 0]\nradii = [0.001, 0.001]\n");
     const ParticleSet grains = make_grains(comm, scene);
     ASSERT_GT(grains.size(), 0U);
     for (std::size_t i = 0; i < grains.size(); ++i)

@@ -189,19 +189,20 @@ void ClumpMotion::predict(ParticleSet& grains, double time_step, GrainRows& rows
     if (!exists_) return;
     const ClumpFields clump(grains);
     const auto own = static_cast<std::uint32_t>(grains.size());
-    for_each_clump(grains, [&](std::size_t some, const ClumpBody& body,
-                               std::span<const std::uint32_t> spheres) {
-        ClumpState state = clump.state(some);
-        state.velocity += time_step * clump.acceleration[some];
-        state.angular_momentum += time_step * clump.torque[some];
-        const Motion motion(body, state);
-        for (std::size_t k = 0; k < spheres.size(); ++k) {
-            if (spheres[k] >= own) continue;
-            Vector3<> velocity = motion.velocity_at(body.shape->centres[k]);
-            if (shear) velocity.x = shear->placed(velocity.x, shear->turns_of(clump.centre[spheres[k]].y));
-            rows.put_velocities(spheres[k], velocity, motion.turning);
-        }
-    });
+    for_each_clump(
+        grains, [&](std::size_t some, const ClumpBody& body, std::span<const std::uint32_t> spheres) {
+            ClumpState state = clump.state(some);
+            state.velocity += time_step * clump.acceleration[some];
+            state.angular_momentum += time_step * clump.torque[some];
+            const Motion motion(body, state);
+            for (std::size_t k = 0; k < spheres.size(); ++k) {
+                if (spheres[k] >= own) continue;
+                Vector3<> velocity = motion.velocity_at(body.shape->centres[k]);
+                if (shear)
+                    velocity.x = shear->placed(velocity.x, shear->turns_of(clump.centre[spheres[k]].y));
+                rows.put_velocities(spheres[k], velocity, motion.turning);
+            }
+        });
 }
 
 void ClumpMotion::bring_centres_back(ParticleSet& grains, const Shear& shear) const {
@@ -322,9 +323,8 @@ void ClumpMotion::kick_by_attraction(ParticleSet& grains, double time) const {
 }
 
 ClumpMotion::Path ClumpMotion::finish_step(ParticleSet& grains, const Responses& responses,
-                                           const Vector3<>& gravity, const Impulse& impulse,
-                                           double kick_step, double time_step, double remaining,
-                                           const Shear* shear) const {
+                                           const Vector3<>& gravity, const Impulse& impulse, double kick_step,
+                                           double time_step, double remaining, const Shear* shear) const {
     if (!exists_) return {};
     const ClumpFields clump(grains);
     const GrainVectors sphere_force(grains, field::sphere_force), sphere_torque(grains, field::sphere_torque),
@@ -332,57 +332,57 @@ ClumpMotion::Path ClumpMotion::finish_step(ParticleSet& grains, const Responses&
     const auto own = static_cast<std::uint32_t>(grains.size());
     const double half_kick = 0.5 * kick_step, half_step = 0.5 * time_step;
     double most = 0, bent = 0, spoilt = 0;  // the last 0 unless a value is infinite or NaN
-    for_each_clump(
-        grains, [&](std::size_t some, const ClumpBody& body, std::span<const std::uint32_t> spheres) {
-            ClumpState state = clump.state(some);
-            const RotationMatrix axes(state.orientation);
-            Vector3<> force, torque;
-            for (std::size_t k = 0; k < spheres.size(); ++k) {
-                const Vector3<> on_sphere = sphere_force[spheres[k]];
-                force += on_sphere;
-                torque += sphere_torque[spheres[k]] + cross(axes.turned(body.shape->centres[k]), on_sphere);
-            }
-            const Vector3<> now = (1 / body.mass()) * force + gravity;
-            state.velocity = remaining * (state.velocity + half_kick * (clump.acceleration[some] + now));
-            state.angular_momentum =
-                remaining * (state.angular_momentum + half_kick * (clump.torque[some] + torque));
-            ClumpState next = state;  // what the next drift begins with
-            if (impulse.next > 0) {
-                const Attraction given = attraction(grains, body, axes, spheres);
-                state.velocity += impulse.now * given.acceleration;
-                state.angular_momentum += impulse.now * given.torque;
-                next.velocity = state.velocity + impulse.next * given.acceleration;
-                next.angular_momentum = state.angular_momentum + impulse.next * given.torque;
-            }
-            const Motion motion(body, state);
+    for_each_clump(grains, [&](std::size_t some, const ClumpBody& body,
+                               std::span<const std::uint32_t> spheres) {
+        ClumpState state = clump.state(some);
+        const RotationMatrix axes(state.orientation);
+        Vector3<> force, torque;
+        for (std::size_t k = 0; k < spheres.size(); ++k) {
+            const Vector3<> on_sphere = sphere_force[spheres[k]];
+            force += on_sphere;
+            torque += sphere_torque[spheres[k]] + cross(axes.turned(body.shape->centres[k]), on_sphere);
+        }
+        const Vector3<> now = (1 / body.mass()) * force + gravity;
+        state.velocity = remaining * (state.velocity + half_kick * (clump.acceleration[some] + now));
+        state.angular_momentum =
+            remaining * (state.angular_momentum + half_kick * (clump.torque[some] + torque));
+        ClumpState next = state;  // what the next drift begins with
+        if (impulse.next > 0) {
+            const Attraction given = attraction(grains, body, axes, spheres);
+            state.velocity += impulse.now * given.acceleration;
+            state.angular_momentum += impulse.now * given.torque;
+            next.velocity = state.velocity + impulse.next * given.acceleration;
+            next.angular_momentum = state.angular_momentum + impulse.next * given.torque;
+        }
+        const Motion motion(body, state);
 
-            // Each of the angles by which turned_freely() turns is at most time x momentum over moment.
-            const double momentum = norm(next.angular_momentum) + half_step * norm(torque);
-            const Vector3<> moments = body.inertia();
-            const double angle = 3 * time_step * momentum / std::min({moments.x, moments.y, moments.z});
-            const double along = time_step * (norm(next.velocity) + half_step * norm(now));
-            for (std::size_t k = 0; k < spheres.size(); ++k) {
-                const std::uint32_t i = spheres[k];
-                if (i >= own) continue;
-                clump.velocity.put(i, state.velocity);
-                clump.acceleration.put(i, now);
-                clump.angular_momentum.put(i, state.angular_momentum);
-                clump.torque.put(i, torque);
-                motion.give(sphere_velocity, sphere_spin, i, body.shape->centres[k]);
-                const Vector3<> arm = body.shape->centres[k];
-                if (shear) {
-                    Vector3<> velocity = sphere_velocity[i];
-                    velocity.x += (shear->turns_of(clump.centre[i].y) - shear->turns_of(clump.position[i].y)) *
-                                  shear->velocity();
-                    sphere_velocity.put(i, velocity);
-                }
-                const Vector3<> start{responses.start[0][i], responses.start[1][i], responses.start[2][i]};
-                const double moved = norm(clump.position[i] - start) + along + angle * norm(arm);
-                spoilt += moved * 0.0;
-                most = std::max(most, moved);
-                bent = std::max(bent, time_step * half_step * norm(now) + 2 * angle * norm(arm));
+        // Each of the angles by which turned_freely() turns is at most time x momentum over moment.
+        const double momentum = norm(next.angular_momentum) + half_step * norm(torque);
+        const Vector3<> moments = body.inertia();
+        const double angle = 3 * time_step * momentum / std::min({moments.x, moments.y, moments.z});
+        const double along = time_step * (norm(next.velocity) + half_step * norm(now));
+        for (std::size_t k = 0; k < spheres.size(); ++k) {
+            const std::uint32_t i = spheres[k];
+            if (i >= own) continue;
+            clump.velocity.put(i, state.velocity);
+            clump.acceleration.put(i, now);
+            clump.angular_momentum.put(i, state.angular_momentum);
+            clump.torque.put(i, torque);
+            motion.give(sphere_velocity, sphere_spin, i, body.shape->centres[k]);
+            const Vector3<> arm = body.shape->centres[k];
+            if (shear) {
+                Vector3<> velocity = sphere_velocity[i];
+                velocity.x += (shear->turns_of(clump.centre[i].y) - shear->turns_of(clump.position[i].y)) *
+                              shear->velocity();
+                sphere_velocity.put(i, velocity);
             }
-        });
+            const Vector3<> start{responses.start[0][i], responses.start[1][i], responses.start[2][i]};
+            const double moved = norm(clump.position[i] - start) + along + angle * norm(arm);
+            spoilt += moved * 0.0;
+            most = std::max(most, moved);
+            bent = std::max(bent, time_step * half_step * norm(now) + 2 * angle * norm(arm));
+        }
+    });
     if (spoilt != 0) return {std::numeric_limits<double>::infinity(), 0};
     return {most * most, bent};
 }

@@ -85,8 +85,8 @@ bool overlap(std::span<const Vector3<>> centres, std::span<const double> radii) 
     return false;
 }
 
-/// Shares v (1 + a + b c), c the centres in units of `length`, v the volumes' shares: four equations for a and
-/// b, of which fewer count if the centres lie in a plane or on a line.
+/// Shares v (1 + a + b c), c the centres in units of `length`, v the volumes' shares: four equations for a
+/// and b, of which fewer count if the centres lie in a plane or on a line.
 std::vector<double> mass_shares(std::span<const Vector3<>> centres, std::span<const double> radii,
                                 double length) {
     Eigen::Matrix4d sums = Eigen::Matrix4d::Zero();

@@ -30,7 +30,7 @@ double hertz_tangent_stiffness(double effective_modulus, double effective_radius
 double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
                             double damping_ratio) {
     const double ratio = 2 * tangential_stiffness / normal_stiffness;
-    const double frequency2 = normal_stiffness / mass;  // of one contact
+    const double frequency2 = normal_stiffness / mass;                 // of one contact
     const double damping = damping_ratio * std::sqrt(2 * frequency2),  // gamma_n/m, and gamma_t/m
         across = damping * std::sqrt(tangential_stiffness / normal_stiffness);
     return std::min(stable_step_of_mode(8 * (1 + ratio) * frequency2, 8 * (damping + across)),

@@ -24,9 +24,9 @@ double hertz_tangent_stiffness(double effective_modulus, double effective_radius
 /// of equal spheres, 12 contacts each, that move and turn, omega^2 = max(8 (1 + r), 40 r) k_n/m (the greatest
 /// eigenvalue of the packing's dynamical matrix over all wave vectors; from r = 1/4 on it is that of all
 /// grains turning alike). r = 2 k_t/k_n: tangential springs advance by velocities predicted to the end of
-/// the step, and at the wall, where motion changes sign each step, such a spring acts twice as stiff. Dashpots
-/// of ratio xi = gamma_n/(2 sqrt(k_n m*)), m* = m/2, and gamma_t = gamma_n sqrt(k_t/k_n) damp these modes by as
-/// many contacts as springs act in: stable_step_of_mode().
+/// the step, and at the wall, where motion changes sign each step, such a spring acts twice as stiff.
+/// Dashpots of ratio xi = gamma_n/(2 sqrt(k_n m*)), m* = m/2, and gamma_t = gamma_n sqrt(k_t/k_n) damp these
+/// modes by as many contacts as springs act in: stable_step_of_mode().
 double packed_lattice_limit(double mass, double normal_stiffness, double tangential_stiffness,
                             double damping_ratio);
 
