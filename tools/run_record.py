@@ -105,7 +105,9 @@ def compare(out, scene_text):
     for reference in tomllib.loads(scene_text or "").get("reference", []):
         file = reference["file"]
         if file.endswith(".json"):
-            value, unit = inside(read_json(Path(out) / file), reference["figure"]), ""
+            times = read_diagnostics(out).get("time", ("", ()))[1]
+            reached = "time" not in reference or (len(times) > 0 and times[-1] >= reference["time"])
+            value, unit = inside(read_json(Path(out) / file), reference["figure"]) if reached else None, ""
         else:
             value, unit = at_time(read_diagnostics(out, file), reference["figure"], reference.get("time"))
         found.append(Comparison(reference["name"], value, reference["value"], reference["uncertainty"], unit,
