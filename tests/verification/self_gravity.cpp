@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "comm/exact_sum.hpp"
+#include "tests/support/gravity_cloud.hpp"
 #include "tests/support/solid_scene.hpp"
 #include "tests/support/spherical_collapse.hpp"
 
@@ -224,6 +225,38 @@ TEST(SelfGravity, MaclaurinSpheroidKeepsItsShape) {
     const Spinning slow = spin(comm, 0.8, 3);
     EXPECT_NEAR(slow.mean_ratio, std::sqrt(1 - 0.508 * 0.508), tolerance);
     EXPECT_GT(slow.mean_ratio, right.mean_ratio + 2 * tolerance);
+}
+
+/// Interactions of all particles at the opening angle where the rms error over the mean acceleration is
+/// `wanted`, between angles on both sides of it.
+double interactions_for(double wanted, GravityCloud& cloud, const GravityCloud::Forces& exact, int order) {
+    gravity::Settings settings{.order = order};
+    double before = 0, error_before = 1;
+    for (settings.theta = 0.9; settings.theta > 0.1; settings.theta *= 0.9) {
+        const auto count = static_cast<double>(cloud.evaluate(settings).interactions());
+        const double error = error_of(cloud.forces(), exact).rms;
+        if (error < wanted && error_before > wanted) {
+            const double share = std::log(error_before / wanted) / std::log(error_before / error);
+            return before * std::pow(count / before, share);
+        }
+        before = count;
+        error_before = error;
+    }
+    return 0;
+}
+
+// Barnes and Hut's tree on two bodies in contact needs three times as many interactions with monopoles as
+// with quadrupoles for an error of a thousandth (docs/charts.md). Here two spheres four radii apart, leaves
+// of 4.
+TEST(SelfGravity, QuadrupolesNeedAThirdOfTheInteractionsOfMonopoles) {
+    const Communicator alone(MPI_COMM_SELF);
+    GravityCloud cloud(alone, "pair", 12000);
+    cloud.evaluate({.direct = true});
+    const GravityCloud::Forces exact = cloud.forces();
+    const double monopoles = interactions_for(1e-3, cloud, exact, 1),
+                 quadrupoles = interactions_for(1e-3, cloud, exact, 2);
+    EXPECT_GT(quadrupoles, 0);
+    EXPECT_GT(monopoles, 3 * quadrupoles) << monopoles << " " << quadrupoles;
 }
 
 }  // namespace
