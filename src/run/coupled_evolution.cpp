@@ -94,8 +94,7 @@ ReadCheckpoint CoupledEvolution::read(const std::filesystem::path& what,
             fmt::format("{}: is of a scene with other walls of grains: {}; this one has {}",
                         found.file.string(), fmt::join(found.state.walls, ", "), fmt::join(wanted, ", ")));
     constexpr double rounding = 1e-9;
-    if (const double step = setup_.grains.simulation.time_step;
-        step > found.state.time_step * (1 + rounding))
+    if (const double step = setup_.grains.simulation.time_step; step > found.state.time_step * (1 + rounding))
         scene_.root().section("dem").error(
             "time_step", fmt::format("{} s is above the next step of the water in the checkpoint; allowed: "
                                      "at most {} s",

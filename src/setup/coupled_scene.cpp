@@ -199,9 +199,8 @@ void take_history_kernel(const Scene& scene, const std::map<std::string, double>
                longest = numbers.find(CoupledSimulation::longest_memory);
     const bool remembers = shortest != numbers.end() && longest != numbers.end();
     if (remembers != kernel.has_value())
-        table.error("basset", remembers
-                                  ? "the checkpoint goes on with memories of past slips; allowed: true"
-                                  : "the checkpoint has no memories of past slips; allowed: false");
+        table.error("basset", remembers ? "the checkpoint goes on with memories of past slips; allowed: true"
+                                        : "the checkpoint has no memories of past slips; allowed: false");
     if (remembers && kernel) {
         const double step = coupled.grains.simulation.time_step;
         if (step < shortest->second)
@@ -209,10 +208,11 @@ void take_history_kernel(const Scene& scene, const std::map<std::string, double>
                                                "coupling.basset in the checkpoint; allowed: at least {} s",
                                                step, shortest->second));
         if (table.has("basset_memory") && kernel->longest() != longest->second)
-            table.error("basset_memory",
-                        fmt::format("the memories in the checkpoint last for {} s; allowed: that, or to leave "
-                                    "out basset_memory",
-                                    longest->second));
+            table.error(
+                "basset_memory",
+                fmt::format("the memories in the checkpoint last for {} s; allowed: that, or to leave "
+                            "out basset_memory",
+                            longest->second));
         kernel.emplace(shortest->second, longest->second);
         coupled.grains.simulation.slip_memories = kernel->size();
     }

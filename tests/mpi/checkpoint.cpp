@@ -225,13 +225,16 @@ TEST(Checkpoint, AnotherFormatVersionIsRefused) {
                                 older = folder.path / "checkpoint_000000001.h5";
     if (comm.is_root()) {
         hdf5::change_attribute(hdf5::open_file(newer, true), "format_version", checkpoint_format_version + 1);
+        std::fstream(newer, std::ios::binary | std::ios::in | std::ios::out)
+            << std::string(guard_size(0), '\0');
         write_guard(newer, {});
     }
     comm.all_barrier();
     ParticleSet again = empty_set();
     EXPECT_EQ(agreed_failure(comm, [&] { read_checkpoint(comm, newer, {&again}); }),
-              newer.string() + ": format version 2, this program reads 1; the checkpoint before it is there: "
-                               "--restart " +
+              newer.string() +
+                  ": format version 2, this program reads 1; the checkpoint before it is there: "
+                  "--restart " +
                   older.string());
     EXPECT_EQ(read_checkpoint(comm, older, {&again}).step, 1U);
 }
