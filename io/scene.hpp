@@ -62,6 +62,10 @@ class Section {
     /// The tables of the array of tables `key`, none if absent. A single table counts as an array of one.
     std::vector<Section> sections(std::string_view key) const;
 
+    /// Lets nothing be told of what the scene says for `key`: for what is not read once something else is
+    /// wrong.
+    void ignore(std::string_view key) const;
+
     /// Records a fault the caller found, at the line of `key`, or of the table if the key is absent or empty.
     void error(std::string_view key, std::string_view message) const;
 

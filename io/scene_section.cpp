@@ -37,6 +37,15 @@ std::string listed(const Values& values, const Write& write) {
     return made + "]";
 }
 
+/// And all below it.
+void mark_read(SceneNode& node) {
+    node.read = true;
+    if (SceneTable* table = node.table())
+        for (auto& [key, child] : *table) mark_read(child);
+    if (SceneArray* array = node.array())
+        for (SceneNode& child : *array) mark_read(child);
+}
+
 std::string comment_of(const SceneNode* found, std::string_view unit) {
     std::string comment(unit == "1" ? "" : unit);
     const auto add = [&](std::string_view words) {
@@ -79,6 +88,10 @@ void Section::error(std::string_view key, std::string_view message) const {
     const std::string what = key.empty() ? path_ : path_of(key);
     state_->faults.push_back(
         {node_ == nullptr ? 0 : node_->order, fmt::format("{}: {} ({})", place, what, message)});
+}
+
+void Section::ignore(std::string_view key) const {
+    if (SceneNode* found = find(key)) mark_read(*found);
 }
 
 bool Section::has(std::string_view key) const { return find(key) != nullptr; }

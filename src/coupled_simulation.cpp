@@ -89,12 +89,17 @@ void CoupledSimulation::resume(double time, double time_step, std::uint64_t step
     grains_.follow(water_.decomposition().partition());
     grains_.resume(time, static_cast<std::uint64_t>(std::llround(numbers.at("grain_steps"))), numbers,
                    contacts);
+    choose_time_step();  // of the checkpoint, which a scene may have left with another step of grains
 }
 
 void CoupledSimulation::save_numbers(std::map<std::string, double>& numbers) const {
     water_.save_numbers(numbers);
     grains_.save_numbers(numbers);
     numbers["grain_steps"] = static_cast<double>(grains_.step_count());
+    if (const auto& kernel = setup_.coupling.laws.basset) {
+        numbers[shortest_memory] = kernel->shortest();
+        numbers[longest_memory] = kernel->longest();
+    }
 }
 
 void CoupledSimulation::reset_counters() {

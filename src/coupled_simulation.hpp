@@ -67,6 +67,8 @@ class CoupledSimulation {
     void step();
 
     void save_numbers(std::map<std::string, double>& numbers) const;
+    /// Names of what is saved of Basset's kernel [s], at whose rates the memories in a checkpoint fade.
+    static constexpr const char *shortest_memory = "basset.shortest", *longest_memory = "basset.longest";
 
     const WaterSimulation& water() const { return water_; }
     WaterSimulation& water() { return water_; }

@@ -12,7 +12,7 @@ double mean_of_decay(double z) { return z > 0 ? -std::expm1(-z) / z : 1.0; }
 
 }  // namespace
 
-HistoryKernel::HistoryKernel(double shortest, double longest) {
+HistoryKernel::HistoryKernel(double shortest, double longest) : shortest_(shortest), longest_(longest) {
     // The rule errs by 2 |Gamma(1/2 + 2 pi i/h)|/Gamma(1/2) = 2/sqrt(cosh(2 pi^2/h)), 5e-4, and the ends by
     // less: rates above 3/shortest have erfc(sqrt(3)), a fourteenth, of the kernel, of which the rule keeps
     // nearly half in its last term, and those below half of 1/longest are one term.

@@ -17,6 +17,8 @@ class HistoryKernel {
     /// Times in which the kernel is right [s], 0 < shortest < longest.
     HistoryKernel(double shortest, double longest);
 
+    double shortest() const { return shortest_; }
+    double longest() const { return longest_; }
     int size() const { return static_cast<int>(terms_.size()); }
     double operator()(double time) const;  ///< [s^-1/2]
 
@@ -41,6 +43,7 @@ class HistoryKernel {
     struct Term {
         double rate, weight;  ///< [1/s], [s^-1/2]
     };
+    double shortest_, longest_;  ///< [s]
     std::vector<Term> terms_;
 };
 

@@ -82,9 +82,7 @@ ReadCheckpoint CoupledEvolution::read(const std::filesystem::path& what,
                                       const std::filesystem::path& output_folder) {
     const auto began = std::chrono::steady_clock::now();
     ReadCheckpoint found{find_checkpoint(comm_, what, output_folder), {}, 0};
-    ParticleSet water = empty_water(setup_.water.simulation), grains = empty_grains(setup_.grains.simulation),
-                contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.grains.simulation));
-    found.state = read_checkpoint(comm_, found.file, {&water, &grains, &contacts});
+    found.state = read_checkpoint_state(comm_, found.file);
     if (const std::vector<std::string> wanted = bodies(); found.state.materials != wanted)
         throw AgreedError(exit_input_output,
                           fmt::format("{}: is of the bodies {}; this scene has {}", found.file.string(),
@@ -95,6 +93,22 @@ ReadCheckpoint CoupledEvolution::read(const std::filesystem::path& what,
             exit_input_output,
             fmt::format("{}: is of a scene with other walls of grains: {}; this one has {}",
                         found.file.string(), fmt::join(found.state.walls, ", "), fmt::join(wanted, ", ")));
+    constexpr double rounding = 1e-9;
+    if (const double step = setup_.grains.simulation.time_step; step > found.state.time_step * (1 + rounding))
+        scene_.root().section("dem").error(
+            "time_step", fmt::format("{} s is above the next step of the water in the checkpoint; allowed: "
+                                     "at most {} s",
+                                     step, found.state.time_step));
+    take_history_kernel(scene_, found.state.numbers, setup_);
+    if (const auto& kernel = setup_.coupling.laws.basset;
+        kernel && kernel->longest() < end_time_ && !scene_.root().section("coupling").has("basset_memory"))
+        setup_.warnings.push_back(
+            fmt::format("Basset's force goes on with the memories of the checkpoint, which last for {} s "
+                        "(coupling.basset_memory), and the run for {} s",
+                        kernel->longest(), end_time_));
+    ParticleSet water = empty_water(setup_.water.simulation), grains = empty_grains(setup_.grains.simulation),
+                contacts = dem::empty_contacts(3, GrainSimulation::history_fields(setup_.grains.simulation));
+    read_checkpoint(comm_, found.file, {&water, &grains, &contacts});
     simulation_.emplace(comm_, setup_.simulation(), std::move(water), std::move(grains));
     read_contacts_ = std::move(contacts);
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

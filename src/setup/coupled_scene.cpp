@@ -179,6 +179,8 @@ CoupledScene read_coupled_scene(const Communicator& comm, const Scene& scene) {
     if (!scene.faulty()) {
         read_coupling(root, coupled);
         refuse_together(root, coupled);
+    } else {
+        root.ignore("coupling");
     }
     scene.finish();
     judge_resolution(coupled);
@@ -187,6 +189,34 @@ CoupledScene read_coupled_scene(const Communicator& comm, const Scene& scene) {
     coupled.grains.simulation.fluid_cells = completed.grains.fluid_cells;
     coupled.grains.simulation.slip_memories = completed.grains.slip_memories;
     return coupled;
+}
+
+void take_history_kernel(const Scene& scene, const std::map<std::string, double>& numbers,
+                         CoupledScene& coupled) {
+    const Section table = scene.root().section("coupling"), dem = scene.root().section("dem");
+    std::optional<coupling::HistoryKernel>& kernel = coupled.coupling.laws.basset;
+    const auto shortest = numbers.find(CoupledSimulation::shortest_memory),
+               longest = numbers.find(CoupledSimulation::longest_memory);
+    const bool remembers = shortest != numbers.end() && longest != numbers.end();
+    if (remembers != kernel.has_value())
+        table.error("basset", remembers ? "the checkpoint goes on with memories of past slips; allowed: true"
+                                        : "the checkpoint has no memories of past slips; allowed: false");
+    if (remembers && kernel) {
+        const double step = coupled.grains.simulation.time_step;
+        if (step < shortest->second)
+            dem.error("time_step", fmt::format("{} s is below the shortest time of the memories of "
+                                               "coupling.basset in the checkpoint; allowed: at least {} s",
+                                               step, shortest->second));
+        if (table.has("basset_memory") && kernel->longest() != longest->second)
+            table.error(
+                "basset_memory",
+                fmt::format("the memories in the checkpoint last for {} s; allowed: that, or to leave "
+                            "out basset_memory",
+                            longest->second));
+        kernel.emplace(shortest->second, longest->second);
+        coupled.grains.simulation.slip_memories = kernel->size();
+    }
+    scene.finish();
 }
 
 }  // namespace talus

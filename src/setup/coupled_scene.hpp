@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,5 +33,12 @@ bool is_coupled_scene(const Scene& scene);
 
 /// Reads everything such a scene says. Throws SceneError (on every rank) with all faults at once. Collective.
 CoupledScene read_coupled_scene(const Communicator& comm, const Scene& scene);
+
+/// Gives a scene the kernel of Basset's force that the memories in a checkpoint, with the numbers
+/// CoupledSimulation::save_numbers(), were made with. Throws SceneError (on every rank) if the checkpoint has
+/// none and the scene one or the reverse, if dem.time_step is below the kernel's shortest time, or if the
+/// scene names another coupling.basset_memory than its longest.
+void take_history_kernel(const Scene& scene, const std::map<std::string, double>& numbers,
+                         CoupledScene& coupled);
 
 }  // namespace talus

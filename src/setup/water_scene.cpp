@@ -72,8 +72,10 @@ void read_rheology(const Section& table, water::Settings& settings) {
 /// Needs the spacing.
 void read_wall_core(const Section& root, const Section& table, int dimension, water::Settings& settings) {
     constexpr double most = 0.95, usual = 0.9;  // water at rest is 1 away: docs/decisions/032
-    const double core = table.number("wall_core", "1", root.has("grains") ? usual : 0.0, {0, most});
-    if (core > 0 && (dimension < 3 || table.has("rheology")))
+    const bool knows_cores = dimension == 3 && !table.has("rheology");
+    const double core =
+        table.number("wall_core", "1", root.has("grains") && knows_cores ? usual : 0.0, {0, most});
+    if (core > 0 && !knows_cores)
         table.error("wall_core", "is of water of one viscosity in three dimensions; allowed: 0");
     settings.wall_core = core * settings.spacing();
 }
@@ -211,6 +213,14 @@ std::vector<WaterGauge> read_gauges(const Section& root, const Box& box, std::ve
     return gauges;
 }
 
+/// What the first fault keeps from being read.
+void ignore_unread(const Section& root) {
+    root.section("water").ignore("rheology");
+    for (const Section& body : root.sections("body"))
+        if (body.has("rigid"))
+            for (const char* key : {"contact", "dem", "materials", "wall"}) root.ignore(key);
+}
+
 }  // namespace
 
 bool is_water_scene(const Scene& scene) { return scene.root().section("water").exists(); }
@@ -243,6 +253,7 @@ WaterScene read_water(const Communicator& comm, const Scene& scene) {
     const Section run = root.section("run");
     setup.partition = read_partition(run);
     setup.rebalance_interval = read_rebalance_interval(run);
+    if (scene.faulty()) ignore_unread(root);
     return water;
 }
 

@@ -1,4 +1,5 @@
 """What scenes of water with grains say when they are wrong. Usage: running.py."""
+import re
 import sys
 import unittest
 
@@ -48,6 +49,19 @@ class Coupling(Case):
 
     def test_an_unknown_drag(self):
         self.check({'"di_felice"': '"di_felici"'}, r"scene\.toml:28: coupling\.drag = .*di_felice")
+
+    def test_one_fault_is_all_that_is_told(self):
+        """What was not read because of it is not told."""
+        for changes, line, fault in (
+                ({"[dem]": "[dem]\ntime_step = -1"}, 20, r"dem\.time_step = -1 .*more than 0"),
+                ({"viscosity = 0.001\n": "", "[[body]]": "[water.rheology]\nyield_stress = 1\nconsistency = 0.1\n[[body]]"}, 7,
+                 r"water\.rheology = a table .*does not go with grains")):
+            scene = SCENE
+            for old, new in changes.items():
+                scene = scene.replace(old, new, 1)
+            done = talus("check", self.scene(scene), ranks=0)
+            self.assert_fails(done, 2, rf"^\S*scene\.toml:{line}: {fault}")
+            self.assertEqual(len((done.stdout + done.stderr).splitlines()), 1, done.stdout + done.stderr)
 
     def test_stokes_without_viscosity(self):
         self.check({'"di_felice"': '"stokes"', "viscosity = 0.001": "viscosity = 0"},
@@ -137,6 +151,49 @@ class Coupling(Case):
         done = talus("check", self.scene(SCENE.replace("viscosity = 0.001", "viscosity = 0")), ranks=0)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertRegex(done.stdout, r"note: the water has no viscosity: it does not drag the grains")
+
+
+class Memories(Case):
+    """A checkpoint with memories of the slip goes on with the kernel that made them."""
+
+    def go_on(self, steps, *settings, out=None, restart=True, ranks=0):
+        scene = SCENE.replace("[coupling]", "[coupling]\nbasset = true").replace(
+            "[dem]\ngravity = [0, 0, 0]", "[dem]\ngravity = [0, 0, -1]").replace("end_time = 0.001", "end_time = 0.01")
+        options = [word for setting in settings for word in ("--set", setting)]
+        return talus("run", self.scene(scene), "--out", out or self.out, "--steps", steps, *(["--restart", "latest"] if restart else []),
+                     *options, ranks=ranks)
+
+    def goes_on(self, *arguments, **more):
+        done = self.go_on(*arguments, **more)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def kernel(self):
+        """Its shortest and longest times in the newest checkpoint [s]."""
+        info = talus("info", self.out, ranks=0).stdout
+        return [float(re.search(rf"basset\.{name} = (\S+)", info).group(1)) for name in ("shortest", "longest")]
+
+    def test_a_longer_run_goes_on_with_them(self):
+        """With the bits of a run that was to be as long from its start and remembers as long."""
+        self.goes_on(3, restart=False)
+        note = self.goes_on(5, "run.end_time=0.1", ranks=2)
+        self.assertRegex(note, r"note: Basset's force goes on .* last for 0\.01 s .*, and the run for 0\.1 s")
+        straight = self.folder / "straight"
+        self.goes_on(5, "run.end_time=0.1", "coupling.basset_memory=0.01", out=straight, restart=False)
+        self.assertEqual(self.hash(self.out), self.hash(straight))
+
+    def test_other_steps_and_memories(self):
+        self.goes_on(2, "dem.time_step=2e-5", restart=False)
+        self.assertEqual(self.kernel(), [2e-5, 0.01])
+        self.goes_on(3, "dem.time_step=3e-5", ranks=2)
+        self.assertEqual(self.kernel(), [2e-5, 0.01])
+        for setting, fault in (
+                ("dem.time_step=1e-5", r"dem\.time_step = 1e-05 .*coupling\.basset in the checkpoint; allowed: at least 2e-05 s"),
+                ("materials.glass.youngs_modulus=10", r"dem\.time_step .*above the next step of the water in the checkpoint; allowed: at most 0\.0016"),
+                ("coupling.basset_memory=0.02", r"coupling\.basset_memory = 0\.02 .*last for 0\.01 s; allowed: that"),
+                ("coupling.basset=false", r"coupling\.basset = false .*allowed: true")):
+            self.assert_fails(self.go_on(4, setting), 2, fault)
+        self.goes_on(4, "coupling.basset_memory=0.01", "dem.time_step=2e-5")
 
 
 if __name__ == "__main__":

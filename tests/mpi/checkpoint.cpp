@@ -7,6 +7,8 @@
 #include <iterator>
 
 #include "agreed_failure.hpp"
+#include "io/checkpoint_layout.hpp"
+#include "io/file_guard.hpp"
 #include "io/hashing.hpp"
 #include "io/id_order.hpp"
 #include "random_particles.hpp"
@@ -211,6 +213,30 @@ TEST(Checkpoint, DamagedMetadataNeverReachHdf5) {
     EXPECT_NE(message.find(": metadata: damaged, checksum does not match; the checkpoint before it"),
               std::string::npos)
         << message;
+}
+
+// Of a program to come, whole otherwise; the one before it can be read.
+TEST(Checkpoint, AnotherFormatVersionIsRefused) {
+    const Communicator comm(MPI_COMM_WORLD);
+    const SharedFolder folder(comm);
+    const ParticleSet set = random_set(comm, 100, 1);
+    for (const std::uint64_t step : {1U, 2U}) write_checkpoint(comm, folder.path, some_state(step), {&set});
+    const std::filesystem::path newer = folder.path / "checkpoint_000000002.h5",
+                                older = folder.path / "checkpoint_000000001.h5";
+    if (comm.is_root()) {
+        hdf5::change_attribute(hdf5::open_file(newer, true), "format_version", checkpoint_format_version + 1);
+        std::fstream(newer, std::ios::binary | std::ios::in | std::ios::out)
+            << std::string(guard_size(0), '\0');
+        write_guard(newer, {});
+    }
+    comm.all_barrier();
+    ParticleSet again = empty_set();
+    EXPECT_EQ(agreed_failure(comm, [&] { read_checkpoint(comm, newer, {&again}); }),
+              newer.string() +
+                  ": format version 2, this program reads 1; the checkpoint before it is there: "
+                  "--restart " +
+                  older.string());
+    EXPECT_EQ(read_checkpoint(comm, older, {&again}).step, 1U);
 }
 
 TEST(Checkpoint, ACutFileIsRefused) {
