@@ -21,7 +21,7 @@ STOP = 5
 STEPS_OF_SCENES = {"silo": (600, 120)}  # filled while it settles, opened, and grains deleted below it
 TO_THE_END = {"asteroid_collision": 200}  # scenes that run to their end, and the step where they are stopped
 # Numbers of ranks, besides one, with their maps; ranks before and after a restart, with the map before: in turns from scene to scene.
-PLANS = [({5: "slabs"}, (2, 3, "scrambled")), ({2: "cheapest", 3: "scrambled"}, (5, 1, "cheapest"))]
+PLANS = [({5: "slabs"}, (2, 3, "scrambled")), ({2: "cheapest"}, (3, 5, "scrambled"))]
 PLAN_OF_OTHERS = ({3: "scrambled"}, None)
 
 STEPS_OF_GRAINS = 20  # times as many: theirs are short
