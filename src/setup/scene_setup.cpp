@@ -221,7 +221,10 @@ SceneSetup read_scene(const Communicator& comm, const Scene& scene) {
         read_sph(root.section("sph"), dimension, setup.simulation.materials, widest_open_spacing(setup));
     read_contacts(root, setup);
     setup.simulation.late_phase = read_late_phase(root, setup.simulation);
-    setup.settle = read_settle(root, setup.bodies, setup.census, setup.simulation);
+    if (scene.faulty())
+        root.ignore("settle");  // it needs all bodies and their particles
+    else
+        setup.settle = read_settle(root, setup.bodies, setup.census, setup.simulation);
     const Section run = root.section("run");
     setup.output = read_output(root);
     setup.simulation.first_time_step = run.has("first_time_step")

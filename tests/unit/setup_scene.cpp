@@ -206,6 +206,13 @@ TEST_F(SceneFiles, ShapeFiles) {
     expect_fault(body + "mass = 1\nmean_radius = 1\n", {"body[0].mass", "not both"});
 }
 
+TEST_F(SceneFiles, BodiesThatCannotSettleForAFaultOfTheirs) {
+    std::string text = two_bodies;
+    text.replace(text.find("radius = \"50 km\""), 16, "radius = \"-50 km\"");
+    expect_fault(text + "[impact]\nspeed = 300\n[gravity]\n[settle]\nlongest = \"1 s\"\n",
+                 {"radius", "-50 km"});
+}
+
 TEST_F(SceneFiles, GlassNeedsAnOpenBox) {
     const std::string body =
         "[[body]]\nmaterial = \"ice\"\nshape = \"sphere\"\nradius = 1\nspacing = 0.2\n"
