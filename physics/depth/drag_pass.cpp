@@ -188,28 +188,21 @@ class DragPass {
     sph::PairRecords<record_size> records_;
 };
 
-template <class Pass>
-void run(Pass&& pass, const CellTable& table, Cells which) {
-    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-        pass.visit(cell, runs);
-    });
-}
-
 }  // namespace
 
 void relative_velocity_pass(ParticleSet& particles, const CellTable& table, Cells which,
                             const Settings& settings, double time) {
     if (particles.dimension() == 1)
-        run(RelativeVelocityPass<1>(particles, table, which, settings, time), table, which);
+        sph::visit_cells(RelativeVelocityPass<1>(particles, table, which, settings, time), table, which);
     else
-        run(RelativeVelocityPass<2>(particles, table, which, settings, time), table, which);
+        sph::visit_cells(RelativeVelocityPass<2>(particles, table, which, settings, time), table, which);
 }
 
 void drag_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
     if (particles.dimension() == 1)
-        run(DragPass<1>(particles, table, which, settings), table, which);
+        sph::visit_cells(DragPass<1>(particles, table, which, settings), table, which);
     else
-        run(DragPass<2>(particles, table, which, settings), table, which);
+        sph::visit_cells(DragPass<2>(particles, table, which, settings), table, which);
 }
 
 }  // namespace talus::depth

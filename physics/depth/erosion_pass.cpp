@@ -166,28 +166,21 @@ class ReleasePass {
     sph::PairRecords<record_size> records_;
 };
 
-template <class Pass>
-void run(Pass&& pass, const CellTable& table, Cells which) {
-    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-        pass.visit(cell, runs);
-    });
-}
-
 }  // namespace
 
 void erosion_pass(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings,
                   double time) {
     if (particles.dimension() == 1)
-        run(ErosionPass<1>(particles, table, which, settings, time), table, which);
+        sph::visit_cells(ErosionPass<1>(particles, table, which, settings, time), table, which);
     else
-        run(ErosionPass<2>(particles, table, which, settings, time), table, which);
+        sph::visit_cells(ErosionPass<2>(particles, table, which, settings, time), table, which);
 }
 
 void release_pass(ParticleSet& particles, const CellTable& table, Cells which) {
     if (particles.dimension() == 1)
-        run(ReleasePass<1>(particles, table, which), table, which);
+        sph::visit_cells(ReleasePass<1>(particles, table, which), table, which);
     else
-        run(ReleasePass<2>(particles, table, which), table, which);
+        sph::visit_cells(ReleasePass<2>(particles, table, which), table, which);
 }
 
 }  // namespace talus::depth

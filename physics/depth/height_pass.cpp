@@ -147,10 +147,7 @@ class HeightPass {
 
 template <int D, Beside beside>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
-    HeightPass<D, beside> pass(particles, table, which, settings);
-    table.for_each_own(which, [&pass](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-        pass.visit(cell, runs);
-    });
+    sph::visit_cells(HeightPass<D, beside>(particles, table, which, settings), table, which);
 }
 
 template <int D>

@@ -91,10 +91,7 @@ class LevelPass {
 
 template <int D>
 void run(ParticleSet& particles, const CellTable& table, Cells which, const Settings& settings) {
-    LevelPass<D> pass(particles, table, which, settings.gravity);
-    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
-        pass.visit(cell, runs);
-    });
+    sph::visit_cells(LevelPass<D>(particles, table, which, settings.gravity), table, which);
 }
 
 }  // namespace

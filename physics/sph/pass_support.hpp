@@ -55,7 +55,15 @@ void with_dimension(const ParticleSet& particles, F&& f) {
     }
 }
 
-/// Lets a pass visit the selected own cells, and counts its pairs.
+/// Lets a pass visit the selected own cells.
+template <class Pass>
+void visit_cells(Pass&& pass, const CellTable& table, Cells which) {
+    table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t) {
+        pass.visit(cell, runs);
+    });
+}
+
+/// The same, and counts its pairs.
 template <class Pass>
 void visit_cells(Pass&& pass, const CellTable& table, Cells which, PassCount& count) {
     table.for_each_own(which, [&](const CellEntry& cell, std::span<const Run> runs, std::size_t k) {
